@@ -1,0 +1,21 @@
+"""The scene: frozen data with no GL and no Qt, checked when made, JSON in and out.
+
+`Scene` is the root of the tree; `Document` is its history. Everything is hashable and compared by
+content, so that any part can be the key of a cache.
+"""
+
+from .camera import STANDARD_VIEWS, Basis, Camera
+from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
+from .document import Document
+from .light import Light, nearest_possible_tilt, tilt_is_possible
+from .params import Field, Param, fields_of
+from .scene import MAX_LIGHTS, Scene, TechniqueParams, parse_setting
+from .transfer import MAX_OPACITY, Region, TransferFunction, TransferPoint
+from .volume import Volume, VolumeInfo
+
+__all__ = [
+    "MAX_CLIP_PLANES", "MAX_LIGHTS", "MAX_OPACITY", "STANDARD_VIEWS",
+    "Basis", "Camera", "ClipPlane", "CropBox", "Document", "Field", "Light", "Param", "Region", "Scene", "TechniqueParams",
+    "TransferFunction", "TransferPoint", "Volume", "VolumeInfo",
+    "fields_of", "nearest_possible_tilt", "parse_setting", "tilt_is_possible",
+]

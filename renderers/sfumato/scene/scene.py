@@ -1,0 +1,342 @@
+"""The scene: one frozen tree that says everything about a picture but its size."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+
+from ..errors import LoadError, SceneError
+from .camera import Camera
+from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
+from .light import Light
+from .params import Param, check, coerce, fields_of, from_json, to_json
+from .transfer import TransferFunction
+from .volume import Volume
+
+#: Version of the JSON form; a reader refuses newer ones.
+FORMAT_VERSION = 1
+MAX_LIGHTS = 4
+
+
+@dataclass(frozen=True)
+class TechniqueParams:
+    """Base of every technique's own parameters; a technique without any uses a bare subclass."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything that a picture depends on, except its size.
+
+    Parameters
+    ----------
+    volume : Volume, optional
+        What is shown.
+    transfer : TransferFunction, optional
+        If not given, a preset is chosen from the modality and the values.
+    camera : Camera, optional
+        If not given, the front view of what the transfer function shows.
+    lights : sequence of Light
+        Up to four.
+    technique : str or TechniqueParams
+        An id (see ``sfumato techniques``) or a technique's parameter object.
+    step : float
+        Sampling distance in voxels (of the smallest spacing).
+    background : (r, g, b, alpha)
+        Linear, straight alpha.
+    exposure : float
+        In stops: linear values are multiplied by 2 ** exposure before the tone map.
+    frames : int
+        Jittered frames that `render` accumulates.
+    clip, crop
+        Clip planes (up to six) and crop box.
+    geometry : tuple
+        Tracts and meshes.
+
+    Raises
+    ------
+    SceneError
+        With the path of the field, the value and what is allowed.
+    """
+
+    volume: Volume | None = None
+    transfer: TransferFunction | None = None
+    camera: Camera | None = None
+    lights: tuple[Light, ...] = (Light(),)
+    technique: Any = "multidirectional"
+    step: Annotated[float, Param("Sampling distance", label="Sampling", unit="voxel", ge=0.05, le=16, soft=(0.25, 4), tab="view", level="more")] = 0.5
+    background: Annotated[tuple[float, float, float, float], Param("Linear RGB and alpha", ge=0, le=1)] = (0.0, 0.0, 0.0, 0.0)
+    exposure: Annotated[float, Param("Brightness in stops", label="Exposure", unit="stops", ge=-16, le=16, soft=(-3, 3), tab="view")] = 0.0
+    frames: Annotated[int, Param("Jittered frames accumulated in a still picture", label="Frames", ge=1, le=1024)] = 1
+    clip: tuple[ClipPlane, ...] = ()
+    crop: CropBox = field(default_factory=CropBox)
+    geometry: tuple[Any, ...] = ()
+
+    def __post_init__(self) -> None:
+        from ..techniques import params_of
+
+        object.__setattr__(self, "lights", tuple(self.lights))
+        object.__setattr__(self, "clip", tuple(self.clip))
+        object.__setattr__(self, "geometry", tuple(self.geometry))
+        check(self)
+        object.__setattr__(self, "technique", params_of(self.technique))
+        if len(self.lights) > MAX_LIGHTS:
+            raise SceneError("lights", f"{len(self.lights)} lights", f"at most {MAX_LIGHTS}")
+        if len(self.clip) > MAX_CLIP_PLANES:
+            raise SceneError("clip", f"{len(self.clip)} planes", f"at most {MAX_CLIP_PLANES}")
+        if self.volume is not None:
+            self._fill_in_defaults(self.volume)
+
+    def _fill_in_defaults(self, volume: Volume) -> None:
+        from .presets import suggest_transfer, suggest_view
+
+        if self.transfer is None:
+            object.__setattr__(self, "transfer", suggest_transfer(volume))
+        if self.camera is None:
+            object.__setattr__(self, "camera", suggest_view(volume, self.transfer))
+
+    # -- what a renderer asks -----------------------------------------------------------------------
+    @property
+    def technique_id(self) -> str:
+        """Id of the technique."""
+        from ..techniques import id_of
+
+        return id_of(self.technique)
+
+    @property
+    def active_lights(self) -> tuple[Light, ...]:
+        """The lights that shine."""
+        return tuple(light for light in self.lights if light.enabled and light.intensity > 0)
+
+    def light_angles(self) -> tuple[tuple[float, float], ...]:
+        """Tilt and rotation in degrees of each active light, as the camera sees it."""
+        assert self.camera is not None
+        basis, target = self.camera.basis(), self.volume.center if self.volume else self.camera.focal_point
+        return tuple(light.angles(basis, target) for light in self.active_lights)
+
+    # -- changed copies -----------------------------------------------------------------------------
+    def with_(self, changes: dict[str, Any] | None = None, /, **more: Any) -> Scene:
+        """Return a changed copy; paths are dotted, as in ``with_(**{"lights.0.tilt": 50})``.
+
+        Raises
+        ------
+        SceneError
+            If a path does not exist or a value is not allowed.
+        """
+        wanted = {**(changes or {}), **more}
+        # Parts changed together (tilt and aperture, both crop bounds) are checked together, not one by one.
+        tree: dict[str, Any] = {}
+        for path, value in wanted.items():
+            _plant(tree, path.split("."), value)
+        try:
+            return _changed(self, tree, "")  # type: ignore[no-any-return]
+        except RecursionError:
+            raise SceneError("scene", wanted, "nested too deeply") from None
+
+    # -- files --------------------------------------------------------------------------------------
+    def to_json(self) -> dict[str, Any]:
+        """Return the scene as JSON data; the volume by path and content hash."""
+        data: dict[str, Any] = {"sfumato": FORMAT_VERSION}
+        for f in dataclasses.fields(self):
+            value = getattr(self, f.name)
+            if f.name == "volume":
+                data["volume"] = None if value is None else {"path": value.info.path, "hash": value.key}
+            elif f.name == "technique":
+                data["technique"] = {"id": self.technique_id, **to_json(value)}
+            elif f.name == "geometry":
+                data["geometry"] = [g.to_json() for g in value]
+            else:
+                data[f.name] = to_json(value)
+        return data
+
+    @staticmethod
+    def from_json(data: Any, volume: Volume | None = None) -> Scene:
+        """Build a scene from JSON data and a volume that was loaded already.
+
+        Raises
+        ------
+        SceneError
+            If a field is unknown or its value is not allowed.
+        """
+        from ..techniques import params_from_json
+
+        if not isinstance(data, dict):
+            raise SceneError("scene", data, "an object is needed here")
+        version = data.get("sfumato")
+        if not isinstance(version, int) or not 1 <= version <= FORMAT_VERSION:
+            raise SceneError("sfumato", version, f"this program reads scene format 1 to {FORMAT_VERSION}; a newer Sfumato may read it")
+        known = fields_of(Scene)
+        values: dict[str, Any] = {"volume": volume}
+        for name, value in data.items():
+            if name in ("sfumato", "volume"):
+                continue
+            if name not in known:
+                raise SceneError(name, value, "unknown field; known: " + ", ".join(known))
+            if name == "technique":
+                values[name] = params_from_json(value)
+            elif name == "geometry":
+                values[name] = ()
+            elif name in _NESTED:
+                values[name] = _nested(name, value)
+            else:
+                values[name] = value
+        return Scene(**values)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the scene as a JSON file, atomically; the volume by path (relative where it can be) and hash.
+
+        Raises
+        ------
+        SceneError
+            If the file cannot be written.
+        """
+        target = Path(path)
+        data = self.to_json()
+        if data["volume"] and data["volume"]["path"]:
+            data["volume"]["path"] = _portable(data["volume"]["path"], target)
+        temporary = target.with_name(target.name + ".part")
+        try:
+            temporary.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+            temporary.replace(target)
+        except OSError as error:
+            temporary.unlink(missing_ok=True)
+            raise SceneError("path", str(target), f"the scene could not be written: {error.strerror or error}") from None
+
+    @staticmethod
+    def open(path: str | os.PathLike[str], volume: Volume | None = None) -> Scene:
+        """Read a scene file and the volume it names.
+
+        Parameters
+        ----------
+        volume : Volume, optional
+            Use this volume instead of the one that the scene names.
+
+        Raises
+        ------
+        LoadError
+            If the file or its volume cannot be read.
+        SceneError
+            If the file holds something that a scene may not hold.
+        """
+        source = Path(path)
+        try:
+            data = json.loads(source.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise LoadError(source, error.strerror or str(error), "check the path") from None
+        except (ValueError, RecursionError) as error:
+            raise LoadError(source, f"not a scene file ({error})", "open a .sfumato file or a volume") from None
+        if volume is None and isinstance(data, dict) and data.get("volume"):
+            volume = _find_volume(data["volume"], source)
+        return Scene.from_json(data, volume)
+
+
+_NESTED: dict[str, type] = {"transfer": TransferFunction, "camera": Camera, "crop": CropBox, "lights": Light, "clip": ClipPlane}
+
+
+def _nested(name: str, value: Any) -> Any:
+    if value is None:
+        return None
+    if name in ("lights", "clip"):
+        if not isinstance(value, list):
+            raise SceneError(name, value, "a list is needed here")
+        return tuple(from_json(_NESTED[name], v, f"{name}.{i}") for i, v in enumerate(value))
+    return from_json(_NESTED[name], value, name)
+
+
+def _portable(volume_path: str, scene_path: Path) -> str:
+    """Return the volume's path relative to the scene file where both lie below one folder."""
+    if volume_path.startswith("sample:"):
+        return volume_path
+    try:
+        return Path(volume_path).resolve().relative_to(scene_path.resolve().parent).as_posix()
+    except ValueError:
+        return str(Path(volume_path).resolve())
+
+
+def _find_volume(reference: Any, scene_path: Path) -> Volume:
+    from ..io import load
+
+    if not isinstance(reference, dict) or not isinstance(reference.get("path"), str) or not reference["path"]:
+        raise LoadError(scene_path, "the scene does not say where its volume is", "open the volume first, then the scene")
+    name = reference["path"]
+    volume = load(name if name.startswith("sample:") else scene_path.parent / name)
+    wanted = reference.get("hash")
+    if isinstance(wanted, str) and wanted != volume.key:
+        raise LoadError(scene_path.parent / name, "this is not the volume that the scene was made with (its content differs)", "open the volume by itself")
+    return volume
+
+
+def _plant(tree: dict[str, Any], path: list[str], value: Any) -> None:
+    for name in path[:-1]:
+        branch = tree.setdefault(name, {})
+        if not isinstance(branch, _Branch):
+            branch = tree[name] = _Branch()
+        tree = branch
+    tree[path[-1]] = value
+
+
+class _Branch(dict[str, Any]):
+    """Changes below a path, as opposed to a value that is a dict."""
+
+
+def _changed(node: Any, changes: dict[str, Any], path: str) -> Any:
+    """Return a copy of a dataclass or tuple in which the named children are changed."""
+    def child(old: Any, change: Any, where: str) -> Any:
+        return _changed(old, change, where) if isinstance(change, _Branch) else change
+
+    prefix = f"{path}." if path else ""
+    if isinstance(node, tuple):
+        items = list(node)
+        for name, change in changes.items():
+            if not name.isdigit() or int(name) >= len(items):
+                raise SceneError(prefix + name, change if not isinstance(change, dict) else "", f"an index from 0 to {len(items) - 1} is needed" if items else "the list is empty")
+            items[int(name)] = child(items[int(name)], change, prefix + name)
+        return tuple(items)
+    if not dataclasses.is_dataclass(node) or isinstance(node, Volume):
+        raise SceneError(path, next(iter(changes.values())), "nothing can be set below this")
+    known = fields_of(type(node))
+    values = {}
+    for name, change in changes.items():
+        if name not in known:
+            raise SceneError(prefix + name, change if not isinstance(change, dict) else "", "unknown field; known: " + ", ".join(known))
+        values[name] = child(getattr(node, name), change, prefix + name)
+    try:
+        return dataclasses.replace(node, **values)  # type: ignore[type-var]
+    except SceneError as error:
+        if error.path.startswith(prefix) and prefix:
+            raise
+        raise SceneError(prefix + error.path, error.value, error.allowed) from None
+
+
+def parse_setting(scene: Scene, path: str, text: str) -> Any:
+    """Turn a command line's text for a path of the scene into a value of the type that lives there.
+
+    Raises
+    ------
+    SceneError
+        If the path does not exist or the text does not fit.
+    """
+    try:
+        value = json.loads(text)
+    except ValueError:
+        value = text
+    node: Any = scene
+    for i, name in enumerate(path.split(".")):
+        where = ".".join(path.split(".")[: i + 1])
+        if isinstance(node, tuple) and name.isdigit() and int(name) < len(node):
+            node, hint, param = node[int(name)], Any, None
+        elif dataclasses.is_dataclass(node) and not isinstance(node, Volume) and name in fields_of(type(node)):
+            f = fields_of(type(node))[name]
+            node, hint, param = getattr(node, name), f.type, f.param
+        else:
+            raise SceneError(where, text, "there is no such field in the scene")
+    if path == "technique":
+        return value
+    if isinstance(node, np.ndarray | Volume):
+        raise SceneError(path, text, "this cannot be set")
+    return coerce(tuple(value) if isinstance(value, list) else value, hint, path, param)

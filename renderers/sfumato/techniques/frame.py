@@ -1,0 +1,100 @@
+"""What a technique is given to draw one frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..scene import Camera, Scene, TransferFunction, Volume
+
+if TYPE_CHECKING:
+    from ..gpu import Device, Target
+
+
+@dataclass(frozen=True)
+class Quality:
+    """How much of the full quality is spent on a frame: the same shading at lower resolution.
+
+    Parameters
+    ----------
+    scale : float
+        Resolution of the picture, relative to its size.
+    step : float
+        Factor on the scene's sampling distance.
+    light : float
+        Factor on the size of the light's texels.
+    """
+
+    scale: float = 1.0
+    step: float = 1.0
+    light: float = 1.0
+
+
+#: Everything that was asked for.
+FULL = Quality()
+#: While the user drags.
+DRAG = Quality(scale=0.5, step=2.0, light=2.0)
+
+
+@dataclass
+class Frame:
+    """One frame to draw: scene, size in pixels, quality, which jitter, and where to.
+
+    ``jitter`` is the offset of the slices or samples in units of the sampling distance, in [0, 1);
+    ``pixel_jitter`` the offset of the rays in pixels, each in [-0.5, 0.5].
+    """
+
+    device: Device
+    scene: Scene
+    size: tuple[int, int]
+    target: Target
+    quality: Quality = FULL
+    index: int = 0
+
+    @property
+    def volume(self) -> Volume:
+        """The scene's volume."""
+        assert self.scene.volume is not None
+        return self.scene.volume
+
+    @property
+    def camera(self) -> Camera:
+        """The scene's camera."""
+        assert self.scene.camera is not None
+        return self.scene.camera
+
+    @property
+    def transfer(self) -> TransferFunction:
+        """The scene's transfer function."""
+        assert self.scene.transfer is not None
+        return self.scene.transfer
+
+    @property
+    def params(self) -> Any:
+        """The technique's own parameters."""
+        return self.scene.technique
+
+    @property
+    def nominal_step(self) -> float:
+        """Sampling distance in mm at full quality."""
+        return self.scene.step * self.volume.min_spacing
+
+    @property
+    def step(self) -> float:
+        """Sampling distance in mm of this frame."""
+        return self.nominal_step * self.quality.step
+
+    @property
+    def jitter(self) -> float:
+        """Offset of the samples along the view, a low-discrepancy sequence that starts in the middle."""
+        return (0.5 + self.index * 0.6180339887498949) % 1.0
+
+    @property
+    def pixel_jitter(self) -> tuple[float, float]:
+        """Offset of the rays in pixels: R2 sequence, (0, 0) first."""
+        g = 1.32471795724474602596
+        x = (0.5 + self.index / g) % 1.0 - 0.5
+        y = (0.5 + self.index / (g * g)) % 1.0 - 0.5
+        return float(np.float32(x)), float(np.float32(y))

@@ -1,0 +1,1 @@
+"""Sample volumes made by code."""
