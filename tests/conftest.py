@@ -1,0 +1,68 @@
+"""What all tests share: options, the real data sets, and an environment that is the same everywhere."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+import pytest
+
+#: The real data sets lie beside the repository, or where SFUMATO_DATA says.
+DATA = Path(os.environ.get("SFUMATO_DATA", Path(__file__).resolve().parents[2] / "shared" / "data"))
+#: Folders in the order in which they run: what fails fast comes first.
+ORDER = ("core", "techniques", "cli", "ui", "images", "bench")
+_HOME = "SFUMATO_TEST_HOME"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--all", action="store_true", help="run the slow tests too (as SFUMATO_ALL=1)")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    # The pictures that tests compare with were drawn by Mesa's software renderer; SFUMATO_TEST_GPU=1 draws
+    # on the machine's own device instead, and the image tests are skipped.
+    if not os.environ.get("SFUMATO_TEST_GPU"):
+        os.environ.setdefault("LIBGL_ALWAYS_SOFTWARE", "1")
+        os.environ.setdefault("GALLIUM_DRIVER", "llvmpipe")
+    # Settings and caches of tests are not the user's. The processes of xdist share the first one's folder.
+    if _HOME not in os.environ:
+        home = tempfile.mkdtemp(prefix="sfumato-test-home-")
+        os.environ[_HOME] = home
+        for name in ("CONFIG", "CACHE", "DATA", "STATE"):
+            os.environ[f"XDG_{name}_HOME"] = str(Path(home) / name.lower())
+        config.add_cleanup(lambda: _forget(home))
+
+
+def _forget(home: str) -> None:
+    os.environ.pop(_HOME, None)
+    shutil.rmtree(home, ignore_errors=True)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    everything = config.getoption("--all") or os.environ.get("SFUMATO_ALL")
+    for item in items:
+        if item.get_closest_marker("slow") and not everything:
+            item.add_marker(pytest.mark.skip(reason="slow: ./run test --all"))
+        if item.get_closest_marker("real_data") and not DATA.is_dir():
+            item.add_marker(pytest.mark.skip(reason=f"the real data sets are not at {DATA}"))
+    items.sort(key=_rank)
+
+
+def _rank(item: pytest.Item) -> tuple[bool, int]:
+    folder = item.path.relative_to(Path(__file__).parent).parts[0]
+    place = ORDER.index(folder) if folder in ORDER else len(ORDER)
+    return item.get_closest_marker("slow") is not None, place
+
+
+@pytest.fixture(scope="session")
+def data_dir() -> Path:
+    """Folder of the real data sets; for tests marked ``real_data``."""
+    return DATA
+
+
+@pytest.fixture(scope="session")
+def software_renderer() -> bool:
+    """Whether drawing is done by llvmpipe, with which the reference pictures were made."""
+    return not os.environ.get("SFUMATO_TEST_GPU")
