@@ -8,7 +8,7 @@ How the house is built::
     shaders/lib/  GLSL by concept, included by name
     techniques/   one folder a technique; `marcher` (the one ray caster) and `sweep` beside them
     reference/    slow, clear float64 versions that tests believe
-    render.py     `Renderer`: a scene and a size in, a picture out, in pieces that can be cancelled
+    renderer.py   `Renderer`: a scene and a size in, a picture out, in pieces that can be cancelled
 
 ``app -> ui -> core``, never back. A frame's path: `Document` tells of a new scene; a worker thread hands it
 to its `Renderer`; the technique draws in bounded pieces, yielding after each; frames with different jitter
@@ -41,7 +41,7 @@ from .scene import (
 
 if TYPE_CHECKING:
     from .io import load
-    from .render import Quality, Renderer, render
+    from .renderer import Quality, Renderer, render
 
 __version__ = "0.1.0"
 
@@ -52,7 +52,7 @@ __all__ = [
 ]
 
 #: Names that bring GL or readers along; imported when first used, so that ``import sfumato`` stays quick.
-_LAZY = {"load": ".io", "render": ".render", "Renderer": ".render", "Quality": ".render"}
+_LAZY = {"load": ".io", "render": ".renderer", "Renderer": ".renderer", "Quality": ".renderer"}
 
 
 def __getattr__(name: str) -> Any:

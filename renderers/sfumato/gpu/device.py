@@ -1,0 +1,130 @@
+"""A graphics device: one OpenGL 3.3 context that belongs to one thread."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import moderngl
+
+from ..errors import GpuError
+from .store import Store
+
+GL_FRAMEBUFFER = 0x8D40
+GL_COLOR_ATTACHMENT0 = 0x8CE0
+GL_SYNC_GPU_COMMANDS_COMPLETE = 0x9117
+GL_SYNC_FLUSH_COMMANDS_BIT = 0x0001
+GL_TIMEOUT_EXPIRED = 0x911B
+GL_WAIT_FAILED = 0x911D
+
+#: Waiting for the GPU is cut into pieces, so that a lost context cannot hold a thread for ever.
+FENCE_SECONDS = 2.0
+MAX_FENCE_WAITS = 60
+
+
+class Device:
+    """An off-screen OpenGL context and what it can do.
+
+    Must be used on the thread that made it. Objects are collected by `collect` alone: with moderngl's
+    automatic mode, an object that is dropped on another thread frees a same-numbered one here.
+
+    Raises
+    ------
+    GpuError
+        If there is no OpenGL 3.3.
+    """
+
+    def __init__(self) -> None:
+        self.ctx = _create_context()
+        self.ctx.gc_mode = "context_gc"
+        self._thread = threading.get_ident()
+        self.store = Store()
+        info = self.ctx.info
+        self.name = str(info["GL_RENDERER"])
+        self.version = str(info["GL_VERSION"])
+        self.max_texture_3d = int(info["GL_MAX_3D_TEXTURE_SIZE"])
+        self.max_texture_2d = int(info["GL_MAX_TEXTURE_SIZE"])
+        self.max_layers = int(info["GL_MAX_ARRAY_TEXTURE_LAYERS"])
+        u32, i32, u64, ptr = ctypes.c_uint, ctypes.c_int, ctypes.c_uint64, ctypes.c_void_p
+        self._attach_layer = self._function("glFramebufferTextureLayer", None, u32, u32, u32, i32, i32)
+        self._fence_sync = self._function("glFenceSync", ptr, u32, u32)
+        self._client_wait = self._function("glClientWaitSync", u32, ptr, u32, u64)
+        self._delete_sync = self._function("glDeleteSync", None, ptr)
+        self._get_error = self._function("glGetError", u32)
+
+    def _function(self, name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
+        # moderngl has no public loader; this attribute is the one place where we rely on a private one.
+        address = self.ctx.mglo._context.load_opengl_function(name)
+        if not address:
+            raise GpuError(f"OpenGL function {name}", f"{self.ctx.info['GL_RENDERER']} does not have it")
+        return ctypes.CFUNCTYPE(result, *arguments)(address)
+
+    def make_current(self) -> None:
+        """Make this the thread's current context.
+
+        Raises
+        ------
+        GpuError
+            On another thread than the one that made the device.
+        """
+        if threading.get_ident() != self._thread:
+            raise GpuError("a device was used on another thread than its own", "make one Renderer per thread")
+        self.ctx.__enter__()
+
+    def attach_layer(self, attachment: int, texture: Any, layer: int) -> None:
+        """Attach one layer of an array or 3D texture to the bound framebuffer (moderngl cannot)."""
+        self._attach_layer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + attachment, texture.glo, 0, layer)
+
+    def wait(self) -> None:
+        """Wait until all that was asked of the GPU is done, without holding Python's global lock.
+
+        Raises
+        ------
+        GpuError
+            If the GPU does not answer: the context is lost, or it ran out of memory.
+        """
+        fence = self._fence_sync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)
+        try:
+            for _ in range(MAX_FENCE_WAITS):
+                answer = self._client_wait(fence, GL_SYNC_FLUSH_COMMANDS_BIT, int(FENCE_SECONDS * 1e9))
+                if answer == GL_WAIT_FAILED:
+                    raise GpuError("the graphics driver stopped answering", "try a smaller picture, or restart the program")
+                if answer != GL_TIMEOUT_EXPIRED:
+                    return
+            raise GpuError("the graphics driver did not finish a pass in two minutes", "try a smaller picture")
+        finally:
+            self._delete_sync(fence)
+
+    def check(self, doing: str) -> None:
+        """Raise a `GpuError` if OpenGL reported an error while doing something."""
+        code = self._get_error()
+        if code:
+            name = {0x0505: "out of GPU memory", 0x0506: "incomplete framebuffer"}.get(code, f"OpenGL error 0x{code:04x}")
+            raise GpuError(doing, f"{name} on {self.name}")
+
+    def collect(self) -> None:
+        """Free GPU objects that nothing refers to any more."""
+        while self.ctx.objects:  # moderngl's own loop trips over objects that were released by hand
+            thing = self.ctx.objects.popleft()
+            if hasattr(thing, "release"):
+                thing.release()
+
+    def close(self) -> None:
+        """Free everything."""
+        self.store.clear()
+        self.collect()
+        self.ctx.release()
+
+
+def _create_context() -> moderngl.Context:
+    backends: list[dict[str, str]] = [{"backend": "egl"}, {}] if sys.platform.startswith("linux") else [{}]
+    reasons = []
+    for backend in backends:
+        try:
+            return moderngl.create_context(standalone=True, require=330, **backend)
+        except Exception as error:  # moderngl raises bare Exceptions
+            reasons.append(str(error))
+    raise GpuError("an OpenGL 3.3 context could not be made", "; ".join(reasons) or "no driver")

@@ -1,0 +1,139 @@
+"""GLSL from files: includes by name, defines for true variants, errors that name our file and line."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import GpuError
+from .device import Device
+
+PACKAGE = Path(__file__).resolve().parent.parent
+LIBRARY = PACKAGE / "shaders" / "lib"
+_INCLUDE = re.compile(r'^\s*#include\s+"([\w.]+)"\s*$')
+
+#: A triangle that covers the viewport.
+FULLSCREEN_VERTEX = """#version 330 core
+void main() {
+    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0;
+    gl_Position = vec4(corner, 0.0, 1.0);
+}
+"""
+
+#: A rectangle given in normalised device coordinates (x0, y0, x1, y1), drawn as a strip.
+RECT_VERTEX = """#version 330 core
+uniform vec4 u_rect;
+void main() {
+    vec2 corner = mix(u_rect.xy, u_rect.zw, vec2(gl_VertexID & 1, gl_VertexID >> 1));
+    gl_Position = vec4(corner, 0.0, 1.0);
+}
+"""
+
+
+@dataclass(frozen=True)
+class ShaderSource:
+    """A shader file (relative to the package) and the defines of one variant."""
+
+    file: str
+    defines: tuple[tuple[str, int], ...] = ()
+
+    def text(self) -> tuple[str, list[str]]:
+        """Return the expanded text and the list of files that its ``#line`` numbers refer to."""
+        files: list[str] = []
+        body = _expand(PACKAGE / self.file, files, set())
+        defines = "".join(f"#define {name} {value}\n" for name, value in self.defines)
+        return f"#version 330 core\n{defines}{body}", files
+
+
+def _expand(path: Path, files: list[str], done: set[Path]) -> str:
+    if path in done:
+        return ""
+    done.add(path)
+    index = len(files)
+    files.append(str(path.relative_to(PACKAGE)))
+    lines = [f"#line 1 {index}"]
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = _INCLUDE.match(line)
+        if match:
+            lines += [_expand(LIBRARY / f"{match[1]}.glsl", files, done), f"#line {number + 1} {index}"]
+        else:
+            lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+class Program:
+    """A linked program whose uniforms are set by name; names that the compiler dropped are ignored."""
+
+    def __init__(self, device: Device, fragment: ShaderSource, vertex: str = FULLSCREEN_VERTEX) -> None:
+        self.device = device
+        text, files = fragment.text()
+        try:
+            self._program = device.ctx.program(vertex_shader=vertex, fragment_shader=text)
+        except Exception as error:  # moderngl raises its own bare Error
+            raise GpuError(f"shader {fragment.file} does not compile", _name_lines(str(error), files)) from None
+        self._array = device.ctx.vertex_array(self._program, [])
+        self._uniforms: dict[str, Any] = {name: self._program[name] for name in self._program}
+        self._units: dict[str, int] = {}
+        for name, member in self._uniforms.items():
+            if _is_sampler(member):
+                self._units[name] = len(self._units)
+                member.value = self._units[name]
+
+    def set(self, **values: Any) -> None:
+        """Set uniforms; arrays may be longer than the compiler's."""
+        for name, value in values.items():
+            member = self._uniforms.get(name)
+            if member is None:
+                continue
+            if isinstance(value, np.ndarray):
+                kind = "i4" if value.dtype.kind in "iu" else "f4"
+                member.write(value.astype(kind).tobytes()[: _byte_size(member)])
+            else:
+                member.value = value
+
+    def bind(self, **textures: Any) -> None:
+        """Bind textures to samplers by name."""
+        for name, texture in textures.items():
+            if name in self._units:
+                texture.use(self._units[name])
+
+    def draw(self, *, rect: tuple[float, float, float, float] | None = None) -> None:
+        """Draw the covering triangle, or a rectangle in normalised device coordinates."""
+        import moderngl
+
+        if rect is None:
+            self._array.render(moderngl.TRIANGLES, vertices=3)
+        else:
+            self.set(u_rect=rect)
+            self._array.render(moderngl.TRIANGLE_STRIP, vertices=4)
+
+    def release(self) -> None:
+        """Free the GPU objects."""
+        self._array.release()
+        self._program.release()
+
+
+def _byte_size(member: Any) -> int:
+    return int(member.dimension) * int(member.array_length) * 4
+
+
+#: GL_SAMPLER_2D, _3D, 2D_ARRAY and their integer forms.
+_SAMPLERS = {0x8B5E, 0x8B5F, 0x8DC1, 0x8DCA, 0x8DCB, 0x8DCF, 0x8DD2, 0x8DD3, 0x8DD7}
+
+
+def _is_sampler(member: Any) -> bool:
+    return getattr(member, "gl_type", None) in _SAMPLERS
+
+
+def _name_lines(message: str, files: list[str]) -> str:
+    """Replace a compiler's ``file-number:line`` by our file's name."""
+    def named(match: re.Match[str]) -> str:
+        number = int(match[1])
+        return f"{files[number]}:{match[2]}" if number < len(files) else match[0]
+
+    flat = re.sub(r"\b(\d+)[:(](\d+)\)?", named, message)
+    return " ".join(flat.split())[:600]

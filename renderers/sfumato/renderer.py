@@ -1,0 +1,232 @@
+"""From a scene and a size to a picture, at once or in pieces that can be cancelled."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from .errors import SceneError
+from .gpu import Device, Program, ShaderSource, Target
+from .scene import Scene
+from .techniques import Painter, technique_for
+from .techniques.frame import DRAG, FULL, Frame, Quality
+
+__all__ = ["DRAG", "FULL", "Accumulation", "Quality", "Renderer", "render"]
+
+#: Largest side of a picture in pixels that is drawn in one go.
+MAX_SIDE = 16384
+
+
+class Renderer:
+    """Draws scenes on a device of its own; to be used on the thread that made it.
+
+    Raises
+    ------
+    GpuError
+        If there is no OpenGL 3.3.
+    """
+
+    def __init__(self) -> None:
+        self.device = Device()
+        self._painters: dict[tuple[str, ...], Painter] = {}
+        self._add = Program(self.device, ShaderSource("shaders/add.frag.glsl"))
+        self._resolve = Program(self.device, ShaderSource("shaders/resolve.frag.glsl"))
+
+    @property
+    def name(self) -> str:
+        """Name of the graphics device, as OpenGL gives it."""
+        return self.device.name
+
+    @property
+    def version(self) -> str:
+        """Version of OpenGL."""
+        return self.device.version
+
+    def begin(self, scene: Scene, size: tuple[int, int], quality: Quality = FULL) -> Accumulation:
+        """Start a picture; add frames to it until it is good enough.
+
+        Parameters
+        ----------
+        scene : Scene
+            What to draw; it needs a volume.
+        size : (int, int)
+            Width and height in pixels, before the quality's scale.
+
+        Raises
+        ------
+        SceneError
+            If there is nothing to draw or the size is not possible.
+        """
+        if scene.volume is None:
+            raise SceneError("volume", None, "a scene needs a volume to be drawn")
+        width, height = (int(v) for v in size)
+        limit = min(MAX_SIDE, self.device.max_texture_2d)
+        if not (1 <= width <= limit and 1 <= height <= limit):
+            raise SceneError("size", size, f"1 to {limit} pixels on a side")
+        self.device.make_current()
+        scaled = max(1, round(width * quality.scale)), max(1, round(height * quality.scale))
+        return Accumulation(self, scene, scaled, quality)
+
+    def painter(self, scene: Scene) -> Painter:
+        """Return the painter of a scene's technique, making it when first asked for."""
+        technique = technique_for(scene.technique)
+        key = (technique.painter, *map(str, sorted(technique.options.items())))
+        if key not in self._painters:
+            self._painters[key] = technique.make_painter(self.device)
+        return self._painters[key]
+
+    def add(self, frame: Target, total: Target) -> None:
+        """Add a frame to a sum."""
+        ctx = self.device.ctx
+        total.fbo.use()
+        self._add.bind(u_frame=frame.texture)
+        ctx.enable(moderngl.BLEND)
+        ctx.blend_func = moderngl.ONE, moderngl.ONE
+        self._add.draw()
+        ctx.disable(moderngl.BLEND)
+
+    def resolve(self, total: Target, frames: int, scene: Scene) -> np.ndarray:
+        """Return a sum of frames as sRGB bytes, shape (height, width, 4), straight alpha, row 0 on top."""
+        width, height = total.size
+        texture = self.device.ctx.texture(total.size, 4)
+        fbo = self.device.ctx.framebuffer([texture])
+        fbo.use()
+        self._resolve.bind(u_sum=total.texture)
+        self._resolve.set(u_scale=1 / frames, u_exposure=2.0**scene.exposure, u_background=_premultiplied(scene))
+        self._resolve.draw()
+        self.device.wait()
+        pixels = np.empty((height, width, 4), dtype=np.uint8)
+        fbo.read_into(pixels, components=4, alignment=1)
+        fbo.release()
+        texture.release()
+        return pixels
+
+    def close(self) -> None:
+        """Free everything."""
+        self.device.make_current()
+        for painter in self._painters.values():
+            painter.release()
+        self._add.release()
+        self._resolve.release()
+        self.device.close()
+
+
+class Accumulation:
+    """A picture that grows better with each jittered frame.
+
+    Attributes
+    ----------
+    size : (int, int)
+        Pixels drawn: the size asked for times the quality's scale.
+    frames : int
+        Frames so far.
+    """
+
+    def __init__(self, renderer: Renderer, scene: Scene, size: tuple[int, int], quality: Quality) -> None:
+        self.renderer = renderer
+        self.scene = scene
+        self.size = size
+        self.quality = quality
+        self.frames = 0
+        self._total: Target | None = None
+        self._latest: Target | None = None
+
+    def add_frame(self) -> Iterator[float]:
+        """Draw one more frame in bounded pieces, yielding progress (0 to 1); stop iterating to cancel it.
+
+        Raises
+        ------
+        GpuError
+            If the device fails; frames added before stay good.
+        """
+        device = self.renderer.device
+        device.make_current()
+        if self._latest is None:
+            self._latest, self._total = Target(device, self.size), Target(device, self.size)
+        frame = Frame(device, self.scene, self.size, self._latest, self.quality, self.frames)
+        for progress in self.renderer.painter(self.scene).paint(frame):
+            yield progress
+            device.make_current()
+        assert self._total is not None
+        self.renderer.add(self._latest, self._total)
+        device.wait()
+        self.frames += 1
+
+    def picture(self) -> np.ndarray:
+        """Return the picture so far: uint8 sRGB, straight alpha, shape (height, width, 4), row 0 on top."""
+        self.renderer.device.make_current()
+        return self.renderer.resolve(self._sum(), self.frames, self.scene)
+
+    def linear(self) -> np.ndarray:
+        """Return linear light so far: float32, premultiplied, before exposure; shape (height, width, 4)."""
+        self.renderer.device.make_current()
+        light = self._sum().read() / np.float32(self.frames)
+        return np.asarray(light + (1 - light[..., 3:]) * np.asarray(_premultiplied(self.scene), dtype=np.float32))
+
+    def _sum(self) -> Target:
+        if self._total is None or self.frames == 0:
+            raise SceneError("frames", self.frames, "draw a frame first")
+        return self._total
+
+    def release(self) -> None:
+        """Free the GPU objects."""
+        self.renderer.device.make_current()
+        for target in (self._latest, self._total):
+            if target is not None:
+                target.release()
+        self._latest = self._total = None
+
+
+def _premultiplied(scene: Scene) -> tuple[float, float, float, float]:
+    r, g, b, a = scene.background
+    return r * a, g * a, b * a, a
+
+
+_own = threading.local()
+
+
+def _renderer_of_this_thread() -> Renderer:
+    if not hasattr(_own, "renderer"):
+        _own.renderer = Renderer()
+    return _own.renderer  # type: ignore[no-any-return]
+
+
+def render(scene: Scene, size: tuple[int, int] = (512, 512), *, linear: bool = False) -> np.ndarray:
+    """Draw a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to draw; ``scene.frames`` jittered frames are accumulated.
+    size : (int, int)
+        Width and height in pixels.
+    linear : bool
+        Return linear light instead of a finished picture.
+
+    Returns
+    -------
+    ndarray
+        uint8 sRGB with straight alpha, shape (height, width, 4), row 0 on top; or float32 linear,
+        premultiplied, before exposure and tone mapping.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no volume or the size is not possible.
+    GpuError
+        If the device cannot do it.
+    """
+    renderer = _renderer_of_this_thread()
+    job: Any = renderer.begin(scene, size)
+    try:
+        for _ in range(scene.frames):
+            for _ in job.add_frame():
+                pass
+        return np.asarray(job.linear() if linear else job.picture())
+    finally:
+        job.release()
+        renderer.device.collect()

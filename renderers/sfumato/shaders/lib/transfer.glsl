@@ -1,0 +1,33 @@
+// Classification. Pre-integrated (Engel2001) with one-dimensional integral functions: the mean of the extinction
+// over values s0..s1 is (I(s1) - I(s0)) / (s1 - s0), so that thin shells between two samples are not missed.
+
+uniform float u_table_size;          // entries of the tables
+
+#ifdef TRANSFER_2D
+uniform sampler2D u_table2d;         // value x gradient magnitude: (tau * colour, tau), tau per mm
+uniform sampler2D u_emission2d;      // tau * emission
+uniform float u_gradient_scale;      // 1 / the gradient magnitude (normalised value per mm) at the table's end
+
+vec2 table2d_at(float s0, float s1, float gradient) {
+    return vec2(0.5 * (s0 + s1), clamp(sqrt(gradient * u_gradient_scale), 0.0, 1.0));
+}
+// Mean extinction per mm (a) and extinction times colour (rgb) between two values.
+vec4 classify(float s0, float s1, float gradient) { return textureLod(u_table2d, table2d_at(s0, s1, gradient), 0.0); }
+vec3 classify_emission(float s0, float s1, float gradient) { return textureLod(u_emission2d, table2d_at(s0, s1, gradient), 0.0).rgb; }
+#else
+uniform sampler2D u_integral;        // integral of (tau * colour, tau) over the normalised value
+uniform sampler2D u_emission;        // integral of tau * emission
+
+vec4 integral_slope(sampler2D table, float s0, float s1) {
+    // Closer together than this the difference drowns in rounding: take the slope over one and a half entries.
+    float least = 1.5 / u_table_size;
+    if (abs(s1 - s0) < least) {
+        s0 = clamp(0.5 * (s0 + s1 - least), 0.0, 1.0 - least);
+        s1 = s0 + least;
+    }
+    vec2 at = (vec2(s0, s1) * (u_table_size - 1.0) + 0.5) / u_table_size;
+    return (textureLod(table, vec2(at.y, 0.5), 0.0) - textureLod(table, vec2(at.x, 0.5), 0.0)) / (s1 - s0);
+}
+vec4 classify(float s0, float s1, float gradient) { return max(integral_slope(u_integral, s0, s1), 0.0); }
+vec3 classify_emission(float s0, float s1, float gradient) { return max(integral_slope(u_emission, s0, s1).rgb, 0.0); }
+#endif

@@ -1,0 +1,21 @@
+// From accumulated light to the picture: mean of the frames, exposure, tone map (clip), sRGB, straight alpha, row 0 on top.
+
+uniform sampler2D u_sum;
+uniform float u_scale;       // 1 / frames
+uniform float u_exposure;    // factor
+uniform vec4 u_background;   // linear, premultiplied
+
+layout(location = 0) out vec4 o_color;
+
+vec3 srgb(vec3 linear) {
+    return mix(linear * 12.92, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
+}
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    at.y = textureSize(u_sum, 0).y - 1 - at.y;
+    vec4 light = texelFetch(u_sum, at, 0) * u_scale;
+    light += (1.0 - light.a) * u_background;
+    vec3 straight = light.a > 0.0 ? light.rgb / light.a : vec3(0.0);
+    o_color = vec4(srgb(clamp(straight * u_exposure, 0.0, 1.0)), light.a);
+}

@@ -1,0 +1,156 @@
+// The one ray caster: marches the segments first..last-1 of every view ray, front to back, over what earlier passes left.
+//
+// SLICES     samples lie on planes that face the viewer; otherwise at equal distances along each ray
+// LIGHTS     lights that are looked up in swept layers; 0: none
+// LITERAL    1: the published occlusion forms, which light a sample by its opacity, not by the slab term
+// PHONG      lights that shade by the gradient, without shadows
+// EMISSION   tissue gives off light
+#include "ray"
+#include "volume"
+#include "clip"
+#include "transfer"
+#include "skip"
+#if LIGHTS > 0
+#include "occlusion"
+#endif
+#if PHONG > 0
+uniform vec3 u_light_color[4];
+uniform vec3 u_towards[4];
+#endif
+
+uniform sampler2D u_previous;    // colour and opacity so far
+uniform bool u_start;            // there is nothing so far
+uniform float u_z0;              // depth of plane 0 in mm (slices), or the samples' offset in steps, in (-1, 0] (rays)
+uniform float u_step;            // sampling distance in mm
+uniform int u_first, u_last;     // segments of this pass
+uniform float u_near;            // mm
+uniform float u_far;             // mm
+uniform float u_ambient, u_diffuse, u_specular, u_shininess;
+uniform float u_edge;            // gradient (normalised value per mm) at which a highlight has half its strength
+
+layout(location = 0) out vec4 o_color;
+
+// What a ray can still let through before it counts as opaque.
+const float OPAQUE = 0.997;
+
+#if PHONG > 0
+// Blinn-Phong; the normal is turned to the viewer, since a gradient has no outside.
+vec3 phong(vec3 gradient, vec3 view, vec3 color, float alpha) {
+    float strength = length(gradient);
+    vec3 normal = strength > 0.0 ? gradient / strength : view;
+    if (dot(normal, view) < 0.0) normal = -normal;
+    vec3 result = color * u_ambient;
+    for (int l = 0; l < PHONG; ++l) {
+        float facing = max(dot(normal, u_towards[l]), 0.0);
+        float shine = facing > 0.0 ? pow(max(dot(normal, normalize(u_towards[l] + view)), 0.0), u_shininess) : 0.0;
+        result += u_light_color[l] * (color * (u_diffuse * facing) + alpha * u_specular * shine * strength / (strength + u_edge));
+    }
+    return result;
+}
+#endif
+
+#if LIGHTS > 0
+// Colour that a slab of the occlusion methods sends to the eye; `lateral` is on the plane where light enters.
+vec3 lit(int i, vec2 lateral_front, vec2 lateral_back, vec3 color, float alpha, float depth, float secant, vec3 t, vec3 view) {
+    vec3 result = color * (alpha * u_ambient);
+#if LITERAL
+    vec4 returned = vec4(alpha);
+#else
+    vec4 returned = slab_term(depth, secant);
+#endif
+    vec3 gradient = vec3(0.0);
+    float strength = 0.0;
+    if (u_specular > 0.0) {
+        gradient = volume_gradient(t);
+        strength = length(gradient);
+        if (dot(gradient, view) < 0.0) gradient = -gradient;
+    }
+    for (int l = 0; l < LIGHTS; ++l) {
+        float visible = visibility(l, i, u_first, u_rear[l] == 1 ? lateral_back : lateral_front);
+        vec3 arrives = u_light_color[l] * visible;
+        result += arrives * color * returned[l];
+        if (strength > 0.0 && dot(gradient, u_towards[l]) > 0.0) {
+            float shine = pow(max(dot(gradient / strength, normalize(u_towards[l] + view)), 0.0), u_shininess);
+            result += arrives * (alpha * u_specular * shine * strength / (strength + u_edge));
+        }
+    }
+    return result;
+}
+#endif
+
+void main() {
+    vec4 sum = u_start ? vec4(0.0) : texelFetch(u_previous, ivec2(gl_FragCoord.xy), 0);
+    o_color = sum;
+    if (sum.a >= 1.0) return;
+
+    Ray ray = view_ray(gl_FragCoord.xy);
+    float secant = length(ray.direction);
+    vec3 a = (u_texture_from_world * vec4(ray.origin, 1.0)).xyz;
+    vec3 b = (u_texture_from_world * vec4(ray.direction, 0.0)).xyz;
+    vec2 range = kept_range(a, b, vec2(u_near, u_far));
+    if (range.x >= range.y) return;
+
+#if SLICES
+    float dz = u_step, z0 = u_z0;
+#else
+    float dz = u_step / secant, z0 = range.x + u_z0 * dz;
+#endif
+    int i = max(u_first, int(floor((range.x - z0) / dz)));
+    float z = max(range.x, z0 + float(i) * dz);
+    float value = 0.0;
+    bool known = false;          // whether `value` is the volume's at z
+    bool hollow = true;          // whether the last segment was empty, so that looking for empty space may pay
+    vec3 view = -ray.direction / secant;
+
+    for (; i < u_last && z < range.y; ++i) {
+        if (hollow) {
+            float run = empty_run(a, b, z);
+            if (run > 0.0) {
+                int next = int(floor((min(z + run, range.y + dz) - z0) / dz));
+                if (next > i) {
+                    i = next - 1;
+                    z = z0 + float(next) * dz;
+                    known = false;
+                    continue;
+                }
+            }
+        }
+        float z_next = min(z0 + float(i + 1) * dz, range.y);
+        if (z_next <= z) continue;
+        if (!known) value = volume_value(a + b * z);
+        float value_next = volume_value(a + b * z_next);
+#ifdef TRANSFER_2D
+        float magnitude = length(volume_gradient(a + b * (0.5 * (z + z_next))));
+#else
+        const float magnitude = 0.0;
+#endif
+        vec4 mean = classify(value, value_next, magnitude);
+        hollow = mean.a <= 0.0;
+        if (!hollow) {
+            float depth = mean.a * (z_next - z);        // optical depth along the axis
+            float alpha = 1.0 - exp(-depth * secant);
+            vec3 color = mean.rgb / mean.a;
+#if LIGHTS > 0
+            float front = z0 + float(i) * dz;
+            vec3 c = lit(i, ray.lateral0 + ray.lateral1 * front, ray.lateral0 + ray.lateral1 * (front + dz),
+                         color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
+#elif PHONG > 0
+            vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
+#else
+            vec3 c = alpha * color;
+#endif
+#if EMISSION
+            c += alpha * classify_emission(value, value_next, magnitude) / mean.a;
+#endif
+            sum += (1.0 - sum.a) * vec4(c, alpha);
+            if (sum.a > OPAQUE) {
+                sum /= sum.a;
+                break;
+            }
+        }
+        value = value_next;
+        known = true;
+        z = z_next;
+    }
+    o_color = sum;
+}

@@ -1,0 +1,271 @@
+"""The one ray caster, which every fast technique shares.
+
+It marches along view rays, front to back, in passes over a range of segments and a part of the picture,
+so that each piece of GPU work is bounded. It skips empty space by a distance map, stops where nothing more
+shows through, and classifies by pre-integration. `MarchPainter` is the ray caster by itself (`raycast`,
+`slices` and their Phong forms); the occlusion methods give it layers of light to read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..gpu import Device, Program, ShaderSource, Target
+from ..gpu.tables import TransferTables, make_tables, occupied_blocks
+from ..gpu.volume_texture import EmptySpace, VolumeTexture, map_empty_space, upload_volume
+from .frame import Frame
+from .stack import Stack, View, clip_uniforms
+
+#: Pixels of the picture marched in one piece of GPU work, so that a newer scene need not wait.
+PIECE_PIXELS = 512 * 256
+#: Gradient, in value range per voxel, at which a highlight has half its strength.
+EDGE = 0.05
+_FAR = 1e30
+
+
+@dataclass
+class Material:
+    """What the GPU holds of a scene's volume and transfer function."""
+
+    volume: VolumeTexture
+    tables: TransferTables
+    empty: EmptySpace
+
+
+def prepare_material(frame: Frame) -> Material:
+    """Return the volume and transfer function on the GPU, uploading what is not there yet."""
+    store, device, volume, transfer = frame.device.store, frame.device, frame.volume, frame.transfer
+    texture = store.get(("volume", volume.key), lambda: upload_volume(device, volume), lambda t: t.size)
+    key = (volume.key, transfer)
+    tables = store.get(("transfer function", *key), lambda: make_tables(device, volume, texture, transfer), lambda t: t.size)
+    empty = store.get(
+        ("empty space", *key),
+        lambda: map_empty_space(device, volume, occupied_blocks(texture, tables.visible)),
+        lambda e: e.size,
+    )
+    return Material(texture, tables, empty)
+
+
+def material_defines(material: Material) -> tuple[tuple[str, int], ...]:
+    """Return the defines of a material's shader variant."""
+    return (("TRANSFER_2D", 1),) if material.tables.max_gradient > 0 else ()
+
+
+def bind_material(program: Program, material: Material, frame: Frame) -> None:
+    """Set what every shader needs to sample, classify, clip and skip."""
+    volume, tables = frame.volume, material.tables
+    program.bind(
+        u_volume=material.volume.texture, u_distance=material.empty.texture,
+        u_integral=tables.color, u_emission=tables.emission, u_table2d=tables.color, u_emission2d=tables.emission,
+    )  # fmt: skip
+    dims = np.asarray(volume.dims)
+    program.set(
+        u_texture_from_world=tuple(volume.texture_from_world.T.ravel().tolist()),
+        u_voxel=tuple((1 / dims).tolist()),
+        u_blocks=tuple((dims / 8).tolist()),
+        u_table_size=float(tables.color.size[0]),
+        u_gradient_scale=1 / tables.max_gradient if tables.max_gradient > 0 else 1.0,
+        **clip_uniforms(frame.scene, volume),
+    )
+
+
+def visible_corners(frame: Frame, material: Material) -> np.ndarray | None:
+    """Return the corners, in world space, of the box around all that is visible; None if nothing is."""
+    bounds = material.empty.bounds
+    if bounds is None:
+        return None
+    low = np.maximum(bounds[0], frame.scene.crop.low)
+    high = np.minimum(bounds[1], frame.scene.crop.high)
+    return frame.volume.corners(tuple(low), tuple(high)) if (low < high).all() else None
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What the march shader is compiled for."""
+
+    slices: bool = False
+    lights: int = 0
+    literal: bool = False
+    phong: int = 0
+
+
+class Marcher:
+    """Draws marching passes into a frame's target, through two pictures that take turns."""
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
+        self._pair: tuple[Target, Target] | None = None
+
+    def program(self, variant: Variant, material: Material) -> Program:
+        """Return the program of a variant, compiling it when first asked for."""
+        defines = (
+            ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
+            ("PHONG", variant.phong), ("EMISSION", int(material.tables.emits)), *material_defines(material),
+        )  # fmt: skip
+        if defines not in self._programs:
+            self._programs[defines] = Program(self.device, ShaderSource("techniques/march.frag.glsl", defines))
+        return self._programs[defines]
+
+    def begin(self, frame: Frame) -> None:
+        """Make the two pictures for a frame's size."""
+        if self._pair is None or self._pair[0].size != frame.size:
+            self._release_pair()
+            self._pair = (Target(self.device, frame.size), Target(self.device, frame.size))
+
+    def march(self, frame: Frame, program: Program, segments: tuple[int, int], box: tuple[int, int, int, int], start: bool) -> Iterator[None]:
+        """March a range of segments over a box of pixels (x0, y0, x1, y1), yielding after each piece."""
+        assert self._pair is not None
+        source, target = self._pair
+        program.set(u_first=segments[0], u_last=segments[1], u_start=start)
+        program.bind(u_previous=source.texture)
+        if start:
+            source.clear()
+            target.clear()
+        x0, y0, x1, y1 = box
+        rows = max(1, PIECE_PIXELS // max(1, x1 - x0))
+        for y in range(y0, y1, rows):
+            target.fbo.use()
+            target.fbo.scissor = (x0, y, x1 - x0, min(rows, y1 - y))
+            program.draw()
+            self.device.wait()
+            target.fbo.scissor = None
+            yield
+        self._pair = (target, source)
+
+    def finish(self, frame: Frame) -> None:
+        """Copy what was drawn to the frame's target."""
+        assert self._pair is not None
+        self.device.ctx.copy_framebuffer(frame.target.fbo, self._pair[0].fbo)
+
+    def clear(self, frame: Frame) -> None:
+        """Leave the frame's target empty."""
+        frame.target.clear()
+
+    def release(self) -> None:
+        """Free programs and pictures."""
+        for program in self._programs.values():
+            program.release()
+        self._programs.clear()
+        self._release_pair()
+
+    def _release_pair(self) -> None:
+        for target in self._pair or ():
+            target.release()
+        self._pair = None
+
+
+def set_view(program: Program, frame: Frame, stack: Stack | None) -> None:
+    """Set the camera's uniforms and the grid of samples."""
+    camera, (width, height) = frame.camera, frame.size
+    basis = camera.basis()
+    program.set(
+        u_eye=camera.position, u_right=basis.right, u_up=basis.up, u_forward=basis.forward,
+        u_half=camera.half_extent(width / height), u_center=camera.window_center, u_parallel=camera.parallel_projection,
+        u_size=(float(width), float(height)), u_pixel_jitter=frame.pixel_jitter,
+        u_step=frame.step, u_z0=stack.z0 if stack else frame.jitter - 1,
+        u_near=near_depth(frame), u_far=_FAR,
+        u_edge=EDGE / frame.volume.min_spacing,
+    )  # fmt: skip
+
+
+def near_depth(frame: Frame) -> float:
+    """Return the depth in mm before which nothing is seen."""
+    return -_FAR if frame.camera.parallel_projection else 1e-3 * frame.camera.distance
+
+
+def max_secant(frame: Frame) -> float:
+    """Return the largest secant of a view ray against the view axis."""
+    if frame.camera.parallel_projection:
+        return 1.0
+    half = np.asarray(frame.camera.half_extent(frame.size[0] / frame.size[1]))
+    across = (1 + np.abs(frame.camera.window_center)) * half
+    return math.hypot(1.0, *across.tolist())
+
+
+def pixel_box(frame: Frame, corners: np.ndarray) -> tuple[int, int, int, int]:
+    """Return the pixels (x0, y0, x1, y1; y upwards) that a box given by its corners can cover."""
+    width, height = frame.size
+    at = View.of(frame.camera).coordinates(corners)
+    depth = at[:, 2:3]
+    if not frame.camera.parallel_projection:
+        if depth.min() <= near_depth(frame):
+            return 0, 0, width, height
+        at = at / depth
+    half, center = np.asarray(frame.camera.half_extent(width / height)), np.asarray(frame.camera.window_center)
+    pixels = (at[:, :2] / half - center + 1) / 2 * np.array([width, height])
+    low, high = np.floor(pixels.min(axis=0)) - 1, np.ceil(pixels.max(axis=0)) + 1
+    x0, y0 = np.clip(low, 0, (width, height)).astype(int)
+    x1, y1 = np.clip(high, 0, (width, height)).astype(int)
+    return int(x0), int(y0), int(x1), int(y1)
+
+
+def is_empty(box: tuple[int, int, int, int]) -> bool:
+    """Tell whether a box of pixels holds none."""
+    return box[0] >= box[2] or box[1] >= box[3]
+
+
+def light_uniforms(frame: Frame, towards: list[np.ndarray]) -> dict[str, Any]:
+    """Return colour times intensity, and the direction towards each active light."""
+    colors, directions = np.zeros((4, 3), dtype=np.float32), np.zeros((4, 3), dtype=np.float32)
+    for k, light in enumerate(frame.scene.active_lights):
+        colors[k] = np.asarray(light.color) * light.intensity
+        directions[k] = towards[k]
+    return {"u_light_color": colors, "u_towards": directions}
+
+
+def lights_towards(frame: Frame) -> list[np.ndarray]:
+    """Return the unit vectors, world space, towards the active lights."""
+    basis, center = frame.camera.basis(), frame.volume.center
+    return [light.towards(basis, center) for light in frame.scene.active_lights]
+
+
+class MarchPainter:
+    """Ray casting and slicing without shadows, unlit or Phong-shaded."""
+
+    def __init__(self, device: Device, *, slices: bool, phong: bool) -> None:
+        self.device = device
+        self.slices = slices
+        self.phong = phong
+        self.marcher = Marcher(device)
+
+    def paint(self, frame: Frame) -> Iterator[float]:
+        """Draw a frame, yielding progress after each bounded piece."""
+        material = prepare_material(frame)
+        corners = visible_corners(frame, material)
+        box = (0, 0, 0, 0) if corners is None else pixel_box(frame, corners)
+        if is_empty(box):
+            self.marcher.clear(frame)
+            yield 1.0
+            return
+        lights = len(frame.scene.active_lights) if self.phong else 0
+        program = self.marcher.program(Variant(self.slices, phong=max(lights, 0)), material)
+        bind_material(program, material, frame)
+        stack = Stack.through(View.of(frame.camera), crop_corners(frame), frame.step, frame.jitter) if self.slices else None
+        set_view(program, frame, stack)
+        if self.phong:
+            p = frame.params
+            program.set(u_ambient=p.ambient, u_diffuse=p.diffuse, u_specular=p.specular, u_shininess=p.shininess)
+            program.set(**light_uniforms(frame, lights_towards(frame)))
+        self.marcher.begin(frame)
+        pieces = max(1, math.ceil((box[3] - box[1]) * (box[2] - box[0]) / PIECE_PIXELS))
+        for k, _ in enumerate(self.marcher.march(frame, program, (0, 1 << 24), box, True)):
+            yield min(1.0, (k + 1) / pieces)
+        self.marcher.finish(frame)
+        yield 1.0
+
+    def release(self) -> None:
+        """Free the GPU objects."""
+        self.marcher.release()
+
+
+def crop_corners(frame: Frame) -> np.ndarray:
+    """Return the corners of the crop box in world space, mm; shape (8, 3)."""
+    return frame.volume.corners(frame.scene.crop.low, frame.scene.crop.high)
+
+

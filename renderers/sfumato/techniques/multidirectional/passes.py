@@ -1,0 +1,218 @@
+"""The passes of the occlusion methods: sweep each light through a batch of slabs, then march the batch.
+
+Batches keep memory bounded whatever the number of slabs, and pieces of GPU work short. A light from behind
+travels against the eye's order: it is swept once from back to front, keeping its state at the edges of the
+batches, and each batch is swept again from there when its turn comes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from ...gpu import Device, Program
+from ..footprint import slab_table
+from ..frame import Frame
+from ..marcher import (
+    Marcher,
+    Material,
+    Variant,
+    bind_material,
+    crop_corners,
+    is_empty,
+    light_uniforms,
+    lights_towards,
+    max_secant,
+    pixel_box,
+    prepare_material,
+    set_view,
+    visible_corners,
+)
+from ..stack import Stack, View
+from ..sweep import Lamp, Sweeper, lamp_for
+
+#: Slabs of a batch: their light lies in the layers of one texture.
+BATCH = 64
+#: Sweep passes between two looks at whether a newer scene is there.
+PASSES_PER_PIECE = 16
+
+
+@dataclass
+class Plan:
+    """All that is decided before the first pass of a frame."""
+
+    material: Material
+    stack: Stack
+    slabs: tuple[int, int]
+    lamps: tuple[Lamp, ...]
+    angles: tuple[tuple[float, float], ...]
+    box: tuple[int, int, int, int]
+    kept: dict[tuple[int, int], Any] = field(default_factory=dict)
+
+    def batches(self) -> list[tuple[int, int]]:
+        """Return the ranges of slabs, front to back."""
+        first, last = self.slabs
+        return [(k, min(k + BATCH, last)) for k in range(first, last, BATCH)]
+
+
+class OcclusionPainter:
+    """Multidirectional occlusion shading; with `headlamp`, its directional special case."""
+
+    def __init__(self, device: Device, *, headlamp: bool = False) -> None:
+        self.device = device
+        self.headlamp = headlamp
+        self.marcher = Marcher(device)
+        self._sweepers: list[Sweeper] = []
+        self._layers: Any = None
+        self._slab_term: tuple[Any, Any] | None = None
+
+    def paint(self, frame: Frame) -> Iterator[float]:
+        """Draw a frame, yielding progress after each bounded piece."""
+        material = prepare_material(frame)
+        corners = visible_corners(frame, material)
+        box = (0, 0, 0, 0) if corners is None else pixel_box(frame, corners)
+        if corners is None or is_empty(box):
+            self.marcher.clear(frame)
+            yield 1.0
+            return
+        plan = self._plan(frame, material, corners, box)
+        program = self._prepare(frame, plan)
+        batches = plan.batches()
+        rear = any(lamp.lattice.rear for lamp in plan.lamps)
+        total = (plan.slabs[1] - plan.slabs[0]) * (2 if rear else 1)
+        done = 0
+        try:
+            if rear:
+                for done in self._sweep_rear(plan):
+                    yield done / total
+            self.marcher.begin(frame)
+            for number, batch in enumerate(batches):
+                for _ in self._sweep_batch(plan, batch):
+                    yield done / total
+                self._bind_layers(program)
+                for _ in self.marcher.march(frame, program, batch, box, number == 0):
+                    yield done / total
+                done += batch[1] - batch[0]
+            self.marcher.finish(frame)
+        finally:
+            for kept in plan.kept.values():
+                for texture in kept.color_attachments:
+                    texture.release()
+                kept.release()
+        yield 1.0
+
+    def _plan(self, frame: Frame, material: Material, corners: np.ndarray, box: tuple[int, int, int, int]) -> Plan:
+        view = View.of(frame.camera)
+        stack = Stack.through(view, crop_corners(frame), frame.step, frame.jitter)
+        depths = view.coordinates(corners)[:, 2]
+        lights = frame.scene.active_lights
+        angles = tuple((0.0, 0.0) if self.headlamp else a for a in frame.scene.light_angles())
+        lamps = tuple(
+            lamp_for(frame, stack, corners, a, light.aperture) for a, light in zip(angles, lights, strict=True)
+        )
+        return Plan(material, stack, stack.slabs_of(depths.min(), depths.max()), lamps, angles, box)
+
+    def _prepare(self, frame: Frame, plan: Plan) -> Program:
+        """Set up the march program, the sweepers and the textures."""
+        params, lamps = frame.params, plan.lamps
+        literal = params.occlusion != "extinction"
+        program = self.marcher.program(Variant(True, lights=len(lamps), literal=literal), plan.material)
+        bind_material(program, plan.material, frame)
+        set_view(program, frame, plan.stack)
+        program.set(u_ambient=params.ambient, u_specular=params.specular, u_shininess=params.shininess)
+        if not lamps:
+            return program
+        self._make_layers(lamps)
+        while len(self._sweepers) < len(lamps):
+            self._sweepers.append(Sweeper(self.device))
+        for sweeper, lamp in zip(self._sweepers, lamps, strict=False):
+            sweeper.prepare(frame, plan.material, lamp)
+        towards = [np.asarray(frame.camera.basis().back)] * len(lamps) if self.headlamp else lights_towards(frame)
+        program.set(**light_uniforms(frame, towards), **_lattice_uniforms(lamps))
+        apertures = [light.aperture for light in frame.scene.active_lights]
+        cones = tuple((tilt, aperture) for (tilt, _), aperture in zip(plan.angles, apertures, strict=True))
+        secant = max_secant(frame)
+        program.set(u_slab_secant_max=secant)
+        program.bind(u_slab_term=self._slab_texture(cones, secant))
+        return program
+
+    def _make_layers(self, lamps: tuple[Lamp, ...]) -> None:
+        width, height = lamps[0].lattice.size
+        wanted = (width, height, BATCH * len(lamps))
+        if self._layers is None or self._layers.size != wanted:
+            if self._layers is not None:
+                self._layers.release()
+            self._layers = self.device.ctx.texture_array(wanted, 1, dtype="nu2")
+            self._layers.filter = (moderngl.LINEAR, moderngl.LINEAR)
+            self._layers.repeat_x = self._layers.repeat_y = False
+            self.device.check(f"{math.prod(wanted) * 2 >> 20} MiB for the light's layers")
+
+    def _slab_texture(self, cones: tuple[tuple[float, float], ...], secant: float) -> Any:
+        key = (cones, secant)
+        if self._slab_term is None or self._slab_term[0] != key:
+            table = slab_table(cones, secant)
+            texture = self.device.ctx.texture((table.shape[1], table.shape[0]), 4, table, dtype="f4")
+            texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+            texture.repeat_x = texture.repeat_y = False
+            if self._slab_term is not None:
+                self._slab_term[1].release()
+            self._slab_term = (key, texture)
+        return self._slab_term[1]
+
+    def _bind_layers(self, program: Program) -> None:
+        if self._layers is not None:
+            program.bind(u_layers=self._layers)
+
+    def _sweep_rear(self, plan: Plan) -> Iterator[int]:
+        """Take the lights from behind through all slabs, keeping their state at the batches' far edges."""
+        batches, done = plan.batches(), 0
+        for first, last in reversed(batches):
+            for number, (sweeper, lamp) in enumerate(zip(self._sweepers, plan.lamps, strict=False)):
+                if not lamp.lattice.rear:
+                    continue
+                plan.kept[number, first] = sweeper.keep()
+                for index in range(last - 1, first - 1, -1):
+                    sweeper.slab(index, self._layers, number * BATCH + index - first)
+                    if index % PASSES_PER_PIECE == 0:
+                        self.device.wait()
+                        yield done
+            done += last - first
+
+    def _sweep_batch(self, plan: Plan, batch: tuple[int, int]) -> Iterator[None]:
+        """Take every light through the slabs of a batch, in its own order."""
+        first, last = batch
+        for number, (sweeper, lamp) in enumerate(zip(self._sweepers, plan.lamps, strict=False)):
+            order = range(first, last)
+            if lamp.lattice.rear:
+                sweeper.load(plan.kept[number, first])
+                order = range(last - 1, first - 1, -1)
+            for count, index in enumerate(order, 1):
+                sweeper.slab(index, self._layers, number * BATCH + index - first)
+                if count % PASSES_PER_PIECE == 0:
+                    self.device.wait()
+                    yield
+
+    def release(self) -> None:
+        """Free the GPU objects."""
+        self.marcher.release()
+        for sweeper in self._sweepers:
+            sweeper.release()
+        for texture in (self._layers, self._slab_term[1] if self._slab_term else None):
+            if texture is not None:
+                texture.release()
+
+
+def _lattice_uniforms(lamps: tuple[Lamp, ...]) -> dict[str, Any]:
+    """Return where the ray caster finds each light's visibility."""
+    shear, origin, rear = np.zeros((4, 2), dtype=np.int32), np.zeros((4, 2), dtype=np.float32), np.zeros(4, dtype=np.int32)
+    for k, lamp in enumerate(lamps):
+        shear[k], origin[k], rear[k] = lamp.lattice.shear, lamp.lattice.origin, int(lamp.lattice.rear)
+    return {
+        "u_shear": shear, "u_lattice_origin": origin, "u_rear": rear, "u_layers_per_light": BATCH,
+        "u_texel": lamps[0].lattice.texel, "u_lattice_size": tuple(map(float, lamps[0].lattice.size)),
+    }  # fmt: skip
