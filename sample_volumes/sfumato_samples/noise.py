@@ -1,0 +1,36 @@
+"""Seeded noise, the same on every machine."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def grain(shape: tuple[int, int, int], seed: int) -> np.ndarray:
+    """Return white noise of mean 0 and deviation 1, nearly normal, float32.
+
+    The sum of the four bytes of a random word; a scanner's noise needs no better tails.
+    """
+    count = int(np.prod(shape))
+    words = np.random.Generator(np.random.PCG64(seed)).integers(0, 1 << 32, count, dtype=np.uint32)
+    total = words.view(np.uint8).reshape(count, 4).sum(axis=1, dtype=np.uint16)
+    # Each byte has mean 127.5 and variance (256^2 - 1) / 12.
+    return ((total.astype(np.float32) - 510) * np.float32(1 / 147.8)).reshape(shape)
+
+
+def smooth_noise(shape: tuple[int, int, int], cell: int, seed: int) -> np.ndarray:
+    """Return smooth noise in -1 to 1 with features of `cell` voxels (a power of two), float32."""
+    lattice = [n // cell + 2 for n in shape]
+    field = np.random.Generator(np.random.PCG64(seed)).random(lattice, dtype=np.float32) * 2 - 1
+    while cell > 1:
+        cell //= 2
+        for axis in range(3):
+            field = _doubled(field, axis)
+    return field[: shape[0], : shape[1], : shape[2]]
+
+
+def _doubled(field: np.ndarray, axis: int) -> np.ndarray:
+    field = np.moveaxis(field, axis, 0)
+    result = np.empty((2 * len(field) - 1, *field.shape[1:]), dtype=np.float32)
+    result[0::2] = field
+    result[1::2] = (field[:-1] + field[1:]) * np.float32(0.5)
+    return np.ascontiguousarray(np.moveaxis(result, 0, axis))
