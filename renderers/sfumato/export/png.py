@@ -1,0 +1,167 @@
+"""PNG pictures that carry the scene they show, so that every picture can be opened and changed again.
+
+The scene is JSON in an ``iTXt`` chunk with the keyword ``sfumato-scene``:
+``{"program": "sfumato 0.1.0", "scene": {…}}``. The scene names its volume by content hash and file name;
+folders, which can tell more than a picture should, are left out.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+import zlib
+from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from ..errors import LoadError, SceneError
+from ..scene import Scene, Volume
+from .atomic import replacing
+
+KEYWORD = "sfumato-scene"
+SAMPLE = "sample:"
+#: Bytes of text that a reader takes; a scene with many tracts stays far below.
+MAX_TEXT = 1 << 26
+
+
+def write_png(path: str | os.PathLike[str], picture: np.ndarray, scene: Scene | None = None) -> None:
+    """Write a picture, atomically, with its scene.
+
+    Parameters
+    ----------
+    picture : ndarray, shape (height, width, 4), uint8
+        sRGB, straight alpha, the top row first; as from `sfumato.render`.
+    scene : Scene, optional
+        What the picture shows.
+
+    Raises
+    ------
+    SceneError
+        If the array is not such a picture.
+    SfumatoError
+        If the file cannot be written.
+    """
+    from PIL import Image
+    from PIL.PngImagePlugin import PngInfo
+
+    if picture.dtype != np.uint8 or picture.ndim != 3 or picture.shape[2] != 4 or picture.size == 0:
+        raise SceneError("picture", f"array of shape {picture.shape} and type {picture.dtype}", "uint8 of shape (height, width, 4)")
+    chunks = PngInfo()
+    chunks.add(b"sRGB", b"\0")
+    if scene is not None:
+        chunks.add_itxt(KEYWORD, scene_text(scene), zip=True)
+    with replacing(path) as part:
+        Image.fromarray(np.ascontiguousarray(picture)).save(part, format="PNG", pnginfo=chunks)
+
+
+def scene_text(scene: Scene) -> str:
+    """Return the JSON that goes into a picture: the scene, without the folders of its files."""
+    from .. import __version__
+
+    data = scene.to_json()
+    for part in [data["volume"], *data["geometry"]]:
+        if isinstance(part, dict) and part.get("path"):
+            part["path"] = _file_name(part["path"])
+    return json.dumps({"program": f"sfumato {__version__}", "scene": data})
+
+
+def read_scene_data(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return the JSON data of the scene that a picture carries.
+
+    Raises
+    ------
+    LoadError
+        If the file is not a PNG of ours.
+    """
+    try:
+        with open(path, "rb") as stream:
+            text = _find_text(stream)
+    except OSError as error:
+        raise LoadError(path, error.strerror or str(error), "check the path") from None
+    except (ValueError, struct.error, zlib.error) as error:
+        raise LoadError(path, f"not a readable PNG ({error})", "open a picture that Sfumato wrote") from None
+    if text is None:
+        raise LoadError(path, "this picture carries no scene", "open a picture that Sfumato wrote, or a volume")
+    try:
+        data = json.loads(text)["scene"]
+    except (ValueError, KeyError, TypeError, RecursionError):
+        data = None
+    if not isinstance(data, dict):
+        raise LoadError(path, "the scene in this picture is damaged", "open the volume instead")
+    return data
+
+
+def _find_text(stream: BinaryIO) -> str | None:
+    """Return our text from the chunks before the pixels, which are left alone: they may be many."""
+    if stream.read(8) != b"\x89PNG\r\n\x1a\n":
+        raise ValueError("it does not begin as one")
+    while True:
+        length, kind = struct.unpack(">I4s", stream.read(8))
+        if kind in (b"IDAT", b"IEND"):
+            return None
+        if kind != b"iTXt" or length > MAX_TEXT:
+            stream.seek(length + 4, os.SEEK_CUR)
+            continue
+        payload = stream.read(length)
+        if struct.unpack(">I", stream.read(4))[0] != zlib.crc32(kind + payload):
+            raise ValueError("a checksum is wrong")
+        keyword, _, rest = payload.partition(b"\0")
+        if keyword == KEYWORD.encode():
+            return _itxt_text(rest)
+
+
+def _itxt_text(rest: bytes) -> str:
+    """Return the text of an iTXt chunk from what follows its keyword (PNG specification, 11.3.4.5)."""
+    packed, (_, _, text) = rest[:1] == b"\1", rest[2:].split(b"\0", 2)
+    if packed:
+        inflate = zlib.decompressobj()
+        text = inflate.decompress(text, MAX_TEXT)
+        if inflate.unconsumed_tail:
+            raise ValueError("its text is too long")
+    return text.decode("utf-8")
+
+
+def open_png(path: str | os.PathLike[str], volume: Volume | None = None) -> Scene:
+    """Return the scene that a picture carries, with its volume, which is looked for beside the picture.
+
+    Parameters
+    ----------
+    volume : Volume, optional
+        Use this volume instead of the one that the scene names.
+
+    Raises
+    ------
+    LoadError
+        If the picture carries no scene, or its volume is not there or another one.
+    SceneError
+        If the scene holds something that a scene may not hold.
+    """
+    data = read_scene_data(path)
+    if volume is None and data.get("volume"):
+        volume = _volume_beside(Path(path), data["volume"])
+    return Scene.from_json(data, volume)
+
+
+def _volume_beside(picture: Path, reference: Any) -> Volume:
+    from ..io import load
+
+    named = reference.get("path") if isinstance(reference, dict) else None
+    if not isinstance(named, str) or not named:
+        raise LoadError(picture, "the scene in this picture does not say where its volume is", "name the volume too")
+    # Only ever a name beside the picture: what a stranger's picture says is no path to follow.
+    name = _file_name(named)
+    place: str | Path = name if name.startswith(SAMPLE) else picture.parent / name
+    if isinstance(place, Path) and not place.exists():
+        raise LoadError(picture, f"its volume {name!r} is not beside it", "put it there, or name the volume too")
+    volume = load(place)
+    if reference.get("hash") not in (None, volume.key):
+        raise LoadError(place, "this is not the volume of the picture (its content differs)", "name the right volume too")
+    return volume
+
+
+def _file_name(path: str) -> str:
+    if path.startswith(SAMPLE):
+        return path
+    return PureWindowsPath(PurePosixPath(path).name).name
