@@ -172,8 +172,10 @@ def cone_directions(tilt: float, aperture: float, rotation: float, count: int) -
     return _about_axis(cosine, index * math.pi * (3 - math.sqrt(5)), tilt, rotation)
 
 
-def cone_quadrature(tilt: float, aperture: float, nodes: int = 32, spokes: int = 128) -> tuple[np.ndarray, np.ndarray]:
-    """Return directions (n, 3) and weights (sum 1) that integrate smooth functions over a cone (rotation 0)."""
+def cone_quadrature(
+    tilt: float, aperture: float, nodes: int = 32, spokes: int = 128
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return directions (n, 3) and weights (sum 1) that integrate over a cone at rotation 0."""
     gauss_nodes, gauss = np.polynomial.legendre.leggauss(nodes)
     low = math.cos(math.radians(aperture))
     cosine = np.repeat(low + (1 - low) * (gauss_nodes + 1) / 2, spokes)

@@ -34,7 +34,7 @@ class Medium:
         if volume is None or transfer is None:
             raise SceneError("volume", None, "a volume is needed")
         if transfer.regions:
-            raise SceneError("transfer.regions", "2D function", "the reference knows functions of the value alone")
+            raise SceneError("transfer.regions", "2D function", "the reference knows 1D functions alone")
         self.low, high = volume.value_range
         self.range = high - self.low if high > self.low else 1.0
         self.voxels = (np.asarray(volume.data, dtype=np.float64) - self.low) / self.range
@@ -44,7 +44,7 @@ class Medium:
         sampled = transfer.evaluate(self.low + self.range * np.arange(CELLS + 1) / CELLS)
         self.tau = transfer.extinction(sampled[:, 3], volume.unit_distance)
         #: tau, tau * colour, tau * emission at the table's nodes; shape (CELLS + 1, 7).
-        self.density = np.concatenate([self.tau[:, None], self.tau[:, None] * sampled[:, [0, 1, 2, 4, 5, 6]]], axis=1)
+        self.density = self.tau[:, None] * np.insert(sampled[:, [0, 1, 2, 4, 5, 6]], 0, 1.0, axis=1)
 
     @cached_property
     def integral(self) -> np.ndarray:
@@ -77,7 +77,7 @@ class Medium:
         """Return mean extinction, and extinction-weighted mean colour and emission of segments."""
         mean = self._mean(s0, s1, list(range(7)))
         tau = mean[..., 0]
-        share = np.divide(mean[..., 1:], tau[..., None], out=np.zeros_like(mean[..., 1:]), where=tau[..., None] > 0)
+        share = mean[..., 1:] / np.where(tau > 0, tau, 1.0)[..., None]
         return tau, share[..., :3], share[..., 3:]
 
     def _mean(self, s0: np.ndarray, s1: np.ndarray, channels: list[int]) -> np.ndarray:

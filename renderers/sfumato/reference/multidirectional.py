@@ -52,7 +52,8 @@ class Stack:
     @staticmethod
     def of(scene: Scene, offset: float) -> Stack:
         """Cut a scene's crop box into slabs, the planes moved by ``offset`` slab thicknesses."""
-        assert scene.volume is not None and scene.camera is not None
+        assert scene.volume is not None
+        assert scene.camera is not None
         corners = Frame.of(scene.camera).to_camera(scene.volume.corners(scene.crop.low, scene.crop.high))
         low, high = corners.min(axis=0), corners.max(axis=0)
         d = scene.step * scene.volume.min_spacing
@@ -163,7 +164,7 @@ class LightGrid:
 
     # -- what the eye asks ----------------------------------------------------------------------------
     def reaching(self, slab: int, p_world: np.ndarray) -> np.ndarray:
-        """Return lambda of a slab at points (n, 3) of its entry plane: bilinear, clamped at the grid's edge."""
+        """Return lambda of a slab at points (n, 3) of its entry plane: bilinear, clamped at the edge."""
         at = self.frame.to_camera(p_world)[:, :2]
         texel = (at - self._origin(slab + 1 if self.rear else slab)) / self.h
         texel = np.clip(texel, 0, [self.nx - 1, self.ny - 1])
@@ -190,7 +191,8 @@ def _shifted(state: np.ndarray, by: np.ndarray, empty: float) -> np.ndarray:
 
 def light_grids(scene: Scene, stack: Stack, medium: Medium, region: Region) -> list[LightGrid]:
     """Sweep each of a scene's lights through the slabs."""
-    assert scene.camera is not None and scene.volume is not None
+    assert scene.volume is not None
+    assert scene.camera is not None
     params, grids = scene.technique, []
     for light, (tilt, rotation) in zip(scene.active_lights, scene.light_angles(), strict=True):
         angles = (0.0 if scene.technique_id == "directional" else tilt, light.aperture, rotation)

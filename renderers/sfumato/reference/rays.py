@@ -101,7 +101,7 @@ class Region:
         self.half_spaces = np.array(rows)
 
     def interval(self, start: np.ndarray, along: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the parameters (t_in, t_out) within which ``start + along t`` is inside; empty if t_in >= t_out."""
+        """Return (t_in, t_out) between which ``start + along t`` is inside; empty if t_in >= t_out."""
         shape = np.broadcast_shapes(start.shape, along.shape)[:-1]
         t_in, t_out = np.full(shape, -np.inf), np.full(shape, np.inf)
         for *normal, offset in self.half_spaces:

@@ -63,7 +63,7 @@ class SecantRule:
 
 
 def secant_rule(tilt: float, aperture: float, nodes: int = NODES) -> SecantRule:
-    """Return the rule of a cone; degrees; tilts above 90 are behind the subject, where secants are the same."""
+    """Return the rule of a cone; degrees; 0 <= tilt < 90 - aperture (behind the subject: 180 - tilt)."""
     directions, weights = cone_quadrature(tilt, aperture)
     secants = 1 / np.abs(directions[:, 2])
     facing = float(weights @ (1 / (1 + secants)))
