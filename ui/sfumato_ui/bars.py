@@ -1,0 +1,126 @@
+"""The top bar and the tool strip: buttons only; what they do is wired in `window`."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import QSize, Qt, Signal
+from qtpy.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+
+from .editing import Editor
+from .icons import icon
+from .theme import current_theme
+
+
+def tool_button(name: str, tip: str, *, text: str = "", checkable: bool = False) -> QToolButton:
+    """Return a button with an accessible name, a tooltip and, if given, text beside its icon."""
+    button = QToolButton()
+    button.setText(text or name)
+    button.setAccessibleName(name)
+    button.setToolTip(tip)
+    button.setCheckable(checkable)
+    button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    button.setIconSize(QSize(20, 20))
+    beside, alone = Qt.ToolButtonStyle.ToolButtonTextBesideIcon, Qt.ToolButtonStyle.ToolButtonIconOnly
+    button.setToolButtonStyle(beside if text else alone)
+    return button
+
+
+class TopBar(QFrame):
+    """Open, Save, Undo, Redo, and to the right Unlit and Save picture."""
+
+    #: Unlit is held (True) or let go.
+    unlit = Signal(bool)
+
+    def __init__(self, editor: Editor) -> None:
+        super().__init__()
+        self.setObjectName("TopBar")
+        self._editor = editor
+        self.open = tool_button("Open", "Open a volume, a folder or a scene (Ctrl+O)", text="Open")
+        self.save = tool_button("Save scene", "Save the scene (Ctrl+S)", text="Save")
+        self.undo = tool_button("Undo", "")
+        self.redo = tool_button("Redo", "")
+        self.before = tool_button("Unlit", "Hold to see the picture without light (hold B)", text="Unlit")
+        self.picture = tool_button("Save picture", "Save the picture as PNG (Ctrl+E)", text="Save picture")
+        row = QHBoxLayout(self)
+        row.setContentsMargins(8, 4, 8, 4)
+        row.setSpacing(2)
+        for button in (self.open, self.save):
+            row.addWidget(button)
+        row.addSpacing(10)
+        for button in (self.undo, self.redo):
+            row.addWidget(button)
+        row.addStretch(1)
+        for button in (self.before, self.picture):
+            row.addWidget(button)
+        self.undo.clicked.connect(editor.undo)
+        self.redo.clicked.connect(editor.redo)
+        self.before.pressed.connect(lambda: self.unlit.emit(True))
+        self.before.released.connect(lambda: self.unlit.emit(False))
+        editor.changed.connect(lambda old, new: self.refresh())
+        editor.history_changed.connect(self.refresh)
+        self.refresh_theme()
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Say what can be undone."""
+        document = self._editor.document
+        for button, word, label, keys in (
+            (self.undo, "Undo", document.undo_label, "Ctrl+Z"),
+            (self.redo, "Redo", document.redo_label, "Ctrl+Shift+Z"),
+        ):
+            button.setEnabled(bool(label))
+            button.setToolTip(f"{word}: {label} ({keys})" if label else f"Nothing to {word.lower()}")
+        opened = self._editor.scene.volume is not None
+        for button in (self.save, self.before, self.picture):
+            button.setEnabled(opened)
+
+    def refresh_theme(self) -> None:
+        """Take the theme's icon colours."""
+        theme = current_theme()
+        for button, name in (
+            (self.open, "open"), (self.save, "save"), (self.undo, "undo"), (self.redo, "redo"),
+            (self.before, "unlit"), (self.picture, "picture"),
+        ):  # fmt: skip
+            button.setIcon(icon(name, theme))
+
+
+class ToolStrip(QFrame):
+    """Exactly one tool is active."""
+
+    chosen = Signal(str)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("Strip")
+        self.group = QButtonGroup(self)
+        self.tools = {
+            "orbit": tool_button("Orbit", "Orbit: drag turns the subject (Esc)", checkable=True),
+            "light": tool_button("Light", "Light: drag moves the selected lamp (L)", checkable=True),
+        }
+        self.fit = tool_button("Fit", "See the whole subject (Home)")
+        column = QVBoxLayout(self)
+        column.setContentsMargins(5, 8, 5, 8)
+        column.setSpacing(4)
+        for name, button in self.tools.items():
+            button.setIconSize(QSize(22, 22))
+            self.group.addButton(button)
+            button.clicked.connect(lambda _=False, name=name: self.choose(name))
+            column.addWidget(button)
+        column.addStretch(1)
+        self.fit.setIconSize(QSize(22, 22))
+        column.addWidget(self.fit)
+        self.choose("orbit")
+        self.refresh_theme()
+
+    def choose(self, name: str) -> None:
+        """Make a tool the active one."""
+        self.tools[name].setChecked(True)
+        self.chosen.emit(name)
+
+    def buttons(self) -> list[QWidget]:
+        """Return the buttons from top to bottom."""
+        return [*self.tools.values(), self.fit]
+
+    def refresh_theme(self) -> None:
+        """Take the theme's icon colours."""
+        for name, button in (*self.tools.items(), ("fit", self.fit)):
+            button.setIcon(icon(name, current_theme()))

@@ -1,0 +1,61 @@
+"""Between document and worker: which scene to draw, when coarsely and when in full."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import QObject, QTimer
+
+from sfumato import Scene
+
+from .editing import Editor
+from .viewport import Viewport
+from .worker import Picture, RenderWorker, ViewRequest
+
+#: Quiet time in milliseconds after which a scene counts as still.
+STILL_MS = 160
+#: Technique of the unlit picture.
+UNLIT = "raycast"
+
+
+class ViewDriver(QObject):
+    """Asks for a coarse picture at each change, and for the full one once nothing changes any more."""
+
+    def __init__(self, editor: Editor, viewport: Viewport, worker: RenderWorker) -> None:
+        super().__init__(viewport)
+        self._editor, self._viewport, self._worker = editor, viewport, worker
+        self._unlit = False
+        self._still = QTimer(self)
+        self._still.setSingleShot(True)
+        self._still.timeout.connect(lambda: self._request(interactive=False))
+        editor.changed.connect(lambda old, new: self.ask())
+        viewport.resized.connect(self.ask)
+        worker.picture.connect(self._on_picture)
+
+    def ask(self) -> None:
+        """Something changed: show it soon, then well."""
+        self._request(interactive=True)
+        self._still.start(STILL_MS)
+
+    def set_unlit(self, unlit: bool) -> None:
+        """Show the picture without light, or with it again."""
+        if unlit != self._unlit:
+            self._unlit = unlit
+            self.ask()
+
+    @property
+    def shown_scene(self) -> Scene:
+        """The scene that the viewport shows."""
+        scene = self._editor.scene
+        return scene.with_(technique=UNLIT) if self._unlit else scene
+
+    def stop(self) -> None:
+        """Ask for nothing more."""
+        self._still.stop()
+
+    def _request(self, interactive: bool) -> None:
+        if self._editor.scene.volume is not None and self._viewport.isVisible():
+            self._worker.show(ViewRequest(self.shown_scene, self._viewport.pixel_size, interactive))
+
+    def _on_picture(self, picture: Picture) -> None:
+        """Show a picture, unless it is of data that are no longer open."""
+        if picture.scene.volume is self._editor.scene.volume:
+            self._viewport.show_picture(picture)

@@ -1,0 +1,196 @@
+"""Opening and saving: from the wish, over question and progress, to the result or its message."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from qtpy.QtCore import QObject, Signal
+from qtpy.QtWidgets import QFileDialog, QWidget
+
+from sfumato import Scene, SfumatoError
+from sfumato.export.png import write_png
+
+from .dialogs import PictureDialog, SeriesDialog, ask_about_unsaved
+from .editing import Editor
+from .loading import SCENE_SUFFIX, Loader
+from .messages import MessageBar
+from .theme import PICTURE_GREY
+from .viewport import Viewport
+from .worker import RenderWorker, SaveRequest
+
+#: Linear value of the grey around the picture.
+_GREY = ((int(PICTURE_GREY[1:3], 16) / 255 + 0.055) / 1.055) ** 2.4
+#: Jittered frames of a saved picture.
+SAVED_FRAMES = 8
+
+
+class Files(QObject):
+    """What touches the disk, on behalf of one window."""
+
+    #: Another scene is open.
+    opened = Signal()
+    #: The scene was saved.
+    scene_saved = Signal()
+
+    def __init__(
+        self, window: QWidget, editor: Editor, viewport: Viewport, worker: RenderWorker, bar: MessageBar
+    ) -> None:
+        super().__init__(window)
+        self._window, self._editor, self._viewport = window, editor, viewport
+        self._worker, self._bar = worker, bar
+        self.loader = Loader()
+        self.scene_path = ""
+        self._opening = ""
+        self._connect()
+
+    def _connect(self) -> None:
+        loader, worker = self.loader, self._worker
+        loader.progress.connect(
+            lambda done, text: self._bar.show_progress(f"Opening {self._opening}… {text}", done)
+        )
+        loader.loaded.connect(self._on_loaded)
+        loader.several.connect(self._ask_for_series)
+        loader.failed.connect(self._on_failed)
+        loader.cancelled.connect(lambda: self._bar.clear("progress"))
+        worker.save_progress.connect(lambda done: self._bar.show_progress("Rendering the picture…", done))
+        worker.saved.connect(lambda path: self._bar.show_notice(f"Saved {path}"))
+        worker.save_cancelled.connect(lambda: self._bar.clear("progress"))
+        self._bar.cancelled.connect(self._cancel)
+
+    def _cancel(self) -> None:
+        self.loader.cancel()
+        self._worker.cancel_save()
+        self._bar.clear("progress")
+
+    # -- opening ----------------------------------------------------------------------------------
+    def ask_to_open(self) -> None:
+        """Let the user choose a file; folders are dropped on the window or chosen by any file in them."""
+        dialog = QFileDialog(self._window, "Open a volume or a scene")
+        dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
+        dialog.fileSelected.connect(self.open)
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def ask_to_open_folder(self) -> None:
+        """Let the user choose a folder."""
+        dialog = QFileDialog(self._window, "Open a folder")
+        dialog.setFileMode(QFileDialog.FileMode.Directory)
+        dialog.setOption(QFileDialog.Option.ShowDirsOnly)
+        dialog.fileSelected.connect(self.open)
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def open(self, path: str, series: Any = None) -> None:
+        """Open a path, after asking about unsaved work."""
+        if not self.may_leave():
+            return
+        self._opening = path.removeprefix("sample:") if path.startswith("sample:") else Path(path).name
+        self._bar.show_progress(f"Opening {self._opening}… ", 0.0)
+        self.loader.open(path, series)
+
+    def _on_loaded(self, scene: Scene, scene_path: str) -> None:
+        self.scene_path = scene_path
+        self._bar.clear()
+        self._editor.reset(scene)
+        self.opened.emit()
+        if scene.volume is not None and scene.volume.info.notices:
+            self._bar.show_notice("\n".join(scene.volume.info.notices))
+
+    def _on_failed(self, message: str) -> None:
+        kept = " What was open stays open." if self._editor.scene.volume is not None else ""
+        self._bar.show_error(f"{message}.{kept}")
+
+    def _ask_for_series(self, path: str, series: Any) -> None:
+        dialog = SeriesDialog(series, self._window)
+        dialog.accepted.connect(lambda: self.loader.open(path, dialog.chosen.key))
+        dialog.rejected.connect(lambda: self._bar.clear("progress"))
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    # -- the scene --------------------------------------------------------------------------------
+    @property
+    def name(self) -> str:
+        """Name of what is open."""
+        if self.scene_path:
+            return Path(self.scene_path).stem
+        volume = self._editor.scene.volume
+        if volume is None:
+            return ""
+        return volume.info.name or Path(volume.info.path).name or "volume"
+
+    def may_leave(self) -> bool:
+        """Ask about unsaved work; tells whether it may be left behind."""
+        if not self._editor.document.modified:
+            return True
+        answer = ask_about_unsaved(self.name, self._window)
+        return answer == "discard" or (answer == "save" and self.save_scene(wait=True))
+
+    def save_scene(self, wait: bool = False) -> bool:
+        """Save to the scene's file, or ask for one; tells whether it was saved (if it could wait for that)."""
+        if self.scene_path:
+            return self.save_scene_as(self.scene_path)
+        start = str(Path.home() / f"{self.name or 'scene'}{SCENE_SUFFIX}")
+        dialog = QFileDialog(self._window, "Save the scene", start, f"Scenes (*{SCENE_SUFFIX})")
+        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+        dialog.setDefaultSuffix(SCENE_SUFFIX[1:])
+        saved: list[bool] = []
+        dialog.fileSelected.connect(lambda path: saved.append(self.save_scene_as(path)))
+        if wait:
+            dialog.exec()
+            dialog.deleteLater()
+        else:
+            dialog.finished.connect(dialog.deleteLater)
+            dialog.open()
+        return bool(saved and saved[0])
+
+    def save_scene_as(self, path: str) -> bool:
+        """Write the scene to a file; a message tells if it could not be written."""
+        try:
+            self._editor.scene.save(path)
+        except SfumatoError as error:
+            self._bar.show_error(f"{error}. Choose another place.")
+            return False
+        self.scene_path = path
+        self._editor.document.mark_saved()
+        self._bar.show_notice(f"Saved {path}")
+        self.scene_saved.emit()
+        return True
+
+    # -- the picture ------------------------------------------------------------------------------
+    def ask_to_save_picture(self) -> None:
+        """Let the user choose size and file of the picture."""
+        dialog = PictureDialog(self._viewport.pixel_size, self._window)
+        dialog.accepted.connect(
+            lambda: self._ask_for_picture_file(dialog.size_in_pixels, dialog.transparent.isChecked())
+        )
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def _ask_for_picture_file(self, size: tuple[int, int], transparent: bool) -> None:
+        dialog = QFileDialog(
+            self._window,
+            "Save the picture",
+            str(Path.home() / f"{self.name or 'picture'}.png"),
+            "PNG (*.png)",
+        )
+        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+        dialog.setDefaultSuffix("png")
+        dialog.fileSelected.connect(lambda path: self.save_picture(path, size, transparent))
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def save_picture(self, path: str, size: tuple[int, int], transparent: bool = False) -> None:
+        """Render the scene in full at a size in pixels and write it as PNG."""
+        scene = self._editor.scene
+        if transparent:
+            drawn = scene.with_(background=(0.0, 0.0, 0.0, 0.0))
+        elif scene.background[3] == 0:
+            # What is saved is what is seen: without a background of its own, the picture stands on the window's grey.
+            drawn = scene.with_(background=(_GREY, _GREY, _GREY, 1.0))
+        else:
+            drawn = scene
+        self._bar.show_progress("Rendering the picture…", 0.0)
+        self._worker.save(
+            SaveRequest(drawn, size, SAVED_FRAMES, lambda picture: write_png(path, picture, scene), path)
+        )

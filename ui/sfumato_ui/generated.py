@@ -1,0 +1,158 @@
+"""Controls made from the declarations of parameters: what `Param` says once becomes slider, box or menu."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qtpy.QtCore import Qt
+from qtpy.QtGui import QWheelEvent
+from qtpy.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QWidget
+
+from sfumato.scene import Field, Param
+
+from .editing import Editor
+from .sliders import LabelledSlider, Range
+
+
+class ChoiceBox(QComboBox):
+    """A menu that the wheel changes only while it is focused."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Ignore the wheel unless focused."""
+        if self.hasFocus():
+            super().wheelEvent(event)
+        else:
+            event.ignore()
+
+
+def tooltip_of(param: Param) -> str:
+    """Return meaning and source of a parameter as they are shown beside its control."""
+    return param.meaning + (f" ({param.source})" if param.source else "")
+
+
+def label_of(field: Field) -> str:
+    """Return the name of a field for people."""
+    return (field.param.label if field.param else "") or field.name.replace("_", " ").capitalize()
+
+
+def slider_range(param: Param) -> Range:
+    """Return the range of a parameter's slider."""
+    if param.soft is not None:
+        return param.soft
+    low = param.ge if param.ge is not None else param.gt if param.gt is not None else 0.0
+    high = param.le if param.le is not None else param.lt if param.lt is not None else low + 1
+    return low, high
+
+
+def slider_for(field: Field) -> LabelledSlider:
+    """Return the slider of a numeric field."""
+    param = field.param
+    assert param is not None
+    low, high = slider_range(param)
+    whole = field.type is int
+    # About a hundred key steps from end to end, rounded to a decimal power.
+    step = 1.0 if whole or high - low >= 50 else 0.1 if high - low > 4 else 0.01 if high - low <= 1 else 0.05
+    decimals = 0 if whole or step >= 1 else 2
+    limits = (param.ge if param.ge is not None else low, param.le if param.le is not None else high)
+    return LabelledSlider(
+        label_of(field), ((low, high),), float(field.default), unit=param.unit, tip=tooltip_of(param),
+        decimals=decimals, step=step, limits=limits,
+    )  # fmt: skip
+
+
+def bind_slider(slider: LabelledSlider, editor: Editor, path: str, name: str, kind: type = float) -> None:
+    """Let a slider edit a path of the scene: a drag is one step of the history, so are quick nudges."""
+
+    def edit(value: float) -> None:
+        editor.change(
+            f"Change {name}",
+            not slider.slider.isSliderDown(),
+            **{path: round(value) if kind is int else value},
+        )
+        slider.set_number(value_at(editor.scene, path))
+
+    slider.edited.connect(edit)
+    slider.drag_started.connect(lambda: editor.begin(f"Change {name}"))
+    slider.drag_finished.connect(editor.end)
+
+
+def value_at(scene: Any, path: str) -> Any:
+    """Return what lies at a dotted path of the scene."""
+    node = scene
+    for part in path.split("."):
+        node = node[int(part)] if part.isdigit() else getattr(node, part)
+    return node
+
+
+class ParamControl(QWidget):
+    """The control of one declared field, bound to a path of the scene."""
+
+    def __init__(self, field: Field, editor: Editor, path: str) -> None:
+        super().__init__()
+        assert field.param is not None
+        self._editor, self._path, self.field = editor, path, field
+        self.name = label_of(field)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        self.control: LabelledSlider | QCheckBox | ChoiceBox
+        if field.type is bool:
+            self.control = self._check_box()
+        elif field.param.choices:
+            self.control = self._choice(field.param)
+            layout.addWidget(QLabel(self.name))
+        else:
+            self.control = slider_for(field)
+            bind_slider(self.control, editor, path, self.name.lower(), field.type)
+        self.control.setAccessibleName(self.name)
+        self.control.setToolTip(tooltip_of(field.param))
+        layout.addWidget(self.control, 1)
+        self.show_value()
+
+    def _check_box(self) -> QCheckBox:
+        box = QCheckBox(self.name)
+        box.toggled.connect(lambda on: self._set(on))
+        return box
+
+    def _choice(self, param: Param) -> ChoiceBox:
+        box = ChoiceBox()
+        for word in param.choices:
+            box.addItem(word.replace("-", " ").capitalize(), word)
+        box.activated.connect(lambda index: self._set(box.itemData(index)))
+        return box
+
+    def _set(self, value: Any) -> None:
+        self._editor.change(f"Change {self.name.lower()}", **{self._path: value})
+
+    def show_value(self) -> None:
+        """Show the scene's value."""
+        value = value_at(self._editor.scene, self._path)
+        if isinstance(self.control, LabelledSlider):
+            self.control.set_number(value)
+            return
+        self.control.blockSignals(True)
+        if isinstance(self.control, QCheckBox):
+            self.control.setChecked(value)
+        else:
+            self.control.setCurrentIndex(self.control.findData(value))
+        self.control.blockSignals(False)
+
+    def refresh_theme(self) -> None:
+        """Take the theme's icon colours."""
+        if isinstance(self.control, LabelledSlider):
+            self.control.refresh_theme()
+
+
+def controls_for(fields: dict[str, Field], level: str, editor: Editor, prefix: str) -> list[ParamControl]:
+    """Return the controls of all declared fields of a level that can be shown as one."""
+    return [
+        ParamControl(field, editor, prefix + name)
+        for name, field in fields.items()
+        if field.param is not None
+        and field.param.level == level
+        and (field.type in (bool, int, float) or field.param.choices)
+    ]

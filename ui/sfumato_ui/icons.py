@@ -1,0 +1,38 @@
+"""Icons from qtawesome's Phosphor font, which comes with the package and needs no network."""
+
+from __future__ import annotations
+
+import qtawesome
+from qtpy.QtGui import QIcon
+
+from .theme import Theme
+
+_GLYPHS = {
+    "open": "ph.folder-open",
+    "save": "ph.floppy-disk",
+    "undo": "ph.arrow-counter-clockwise",
+    "redo": "ph.arrow-clockwise",
+    "picture": "ph.image",
+    "unlit": "ph.lightbulb-filament",
+    "orbit": "ph.cube",
+    "light": "ph.sun",
+    "fit": "ph.corners-out",
+    "add": "ph.plus",
+    "remove": "ph.trash",
+    "mute": "ph.eye-slash",
+    "shown": "ph.eye",
+    "close": "ph.x",
+    "error": "ph.warning",
+    "info": "ph.info",
+    "reset": "ph.arrow-u-up-left",
+    "closed": "ph.caret-right",
+    "opened": "ph.caret-down",
+}
+
+
+def icon(name: str, theme: Theme, color: str = "") -> QIcon:
+    """Return an icon in the theme's text colour, in the colour of checked buttons while checked."""
+    base = color or theme.text
+    return qtawesome.icon(
+        _GLYPHS[name], color=base, color_on=color or theme.on_accent, color_disabled=theme.border
+    )

@@ -1,0 +1,131 @@
+"""The bar on top of the picture that tells what happened, what to do, or how far something is."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import Qt, QTimer, Signal
+from qtpy.QtGui import QColor, QPalette
+from qtpy.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QProgressBar,
+    QPushButton,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from .icons import icon
+from .theme import current_theme
+
+#: A notice goes away by itself after this, in milliseconds; an error stays until it is closed.
+NOTICE_MS = 12_000
+
+
+class MessageBar(QFrame):
+    """One message at a time, laid over the picture."""
+
+    #: The user pressed the bar's button ("Cancel").
+    cancelled = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setObjectName("MessageBar")
+        self.kind = ""
+        self._icon = QLabel()
+        self._text = QLabel()
+        self._text.setWordWrap(True)
+        self._text.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self._text.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+        self._bar = QProgressBar()
+        self._bar.setTextVisible(False)
+        self._bar.setRange(0, 1000)
+        self._bar.setAccessibleName("Progress")
+        self._cancel = QPushButton("Cancel")
+        self._close = QToolButton()
+        self._close.setAccessibleName("Close the message")
+        self._cancel.clicked.connect(self.cancelled)
+        self._close.clicked.connect(self.clear)
+        self._fade = QTimer(self)
+        self._fade.setSingleShot(True)
+        self._fade.timeout.connect(self.clear)
+        self._lay_out()
+        self.hide()
+
+    def _lay_out(self) -> None:
+        words = QVBoxLayout()
+        words.setSpacing(6)
+        words.addWidget(self._text)
+        words.addWidget(self._bar)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(12, 8, 8, 8)
+        row.setSpacing(10)
+        row.addWidget(self._icon, 0, Qt.AlignmentFlag.AlignTop)
+        row.addLayout(words, 1)
+        row.addWidget(self._cancel, 0, Qt.AlignmentFlag.AlignVCenter)
+        row.addWidget(self._close, 0, Qt.AlignmentFlag.AlignTop)
+
+    @property
+    def text(self) -> str:
+        """What it says."""
+        return self._text.text() if self.isVisible() else ""
+
+    def show_error(self, text: str) -> None:
+        """Say what went wrong; it stays until closed or replaced."""
+        self._show("error", text)
+
+    def show_notice(self, text: str) -> None:
+        """Say something worth knowing; it goes away by itself."""
+        self._show("notice", text)
+        self._fade.start(NOTICE_MS)
+
+    def show_progress(self, text: str, fraction: float) -> None:
+        """Say how far something is (0 to 1), with a button to give it up."""
+        self._bar.setValue(round(1000 * max(0.0, min(1.0, fraction))))
+        if self.kind != "progress" or self._text.text() != text:
+            self._show("progress", text)
+
+    def clear(self, kind: str = "") -> None:
+        """Hide the bar, if it shows this kind of message (any, if none is named)."""
+        if not kind or kind == self.kind:
+            self._fade.stop()
+            self.kind = ""
+            self.hide()
+
+    def place(self) -> None:
+        """Take the width that the picture has, up to a readable line."""
+        parent = self.parentWidget()
+        width = min(620, parent.width() - 24)
+        self.setFixedWidth(max(120, width))
+        self._text.setFixedWidth(max(60, width - 60 - (90 if self.kind == "progress" else 40)))
+        self.adjustSize()
+        self.move((parent.width() - self.width()) // 2, 12)
+
+    def _show(self, kind: str, text: str) -> None:
+        self._fade.stop()
+        self.kind = kind
+        self._text.setText(text)
+        self._text.setAccessibleName(text)
+        self._bar.setVisible(kind == "progress")
+        self._cancel.setVisible(kind == "progress")
+        self._close.setVisible(kind != "progress")
+        self.refresh_theme()
+        self.place()
+        self.show()
+        self.raise_()
+
+    def refresh_theme(self) -> None:
+        """Take the theme's colours."""
+        theme = current_theme()
+        bad = self.kind == "error"
+        ground, ink = (theme.error, theme.on_error) if bad else (theme.panel, theme.text)
+        self.setStyleSheet(
+            f"#MessageBar {{ background: {ground}; border: 1px solid {theme.border}; border-radius: 6px; }}"
+            f"#MessageBar QLabel {{ color: {ink}; }}"
+        )
+        palette = self.palette()
+        palette.setColor(QPalette.ColorRole.WindowText, QColor(ink))
+        self.setPalette(palette)
+        self._icon.setPixmap(icon("error" if bad else "info", theme, ink).pixmap(20, 20))
+        self._close.setIcon(icon("close", theme, ink))

@@ -1,0 +1,176 @@
+"""The Light tab: lamps, dial, tilt, rotation, softness, intensity, technique and what belongs to it."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtWidgets import QHBoxLayout, QLabel, QWidget
+
+from sfumato import Light, Scene
+from sfumato.scene import fields_of, nearest_possible_tilt
+from sfumato.techniques import techniques
+
+from .. import light_moves
+from ..color_button import ColorButton
+from ..dial import MOVE, SOFTEN, LightDial
+from ..editing import Editor
+from ..generated import ChoiceBox, ParamControl, controls_for, tooltip_of
+from ..lamps import LampRow
+from ..section import Section
+from ..sliders import LabelledSlider
+from .page import Page
+
+
+class LightPage(Page):
+    """Everything that lights the picture."""
+
+    #: The technique's controls were made anew.
+    rebuilt = Signal()
+
+    def __init__(self, editor: Editor) -> None:
+        super().__init__()
+        self._editor = editor
+        self.lamps = LampRow(editor)
+        self.dial = LightDial(editor)
+        self.tilt = self._slider("tilt", "Tilt", ((0, 69), (111, 180)))
+        self.rotation = self._slider("rotation", "Rotation", ((0, 360),))
+        self.aperture = self._slider(
+            "aperture", "Softness", ((light_moves.MIN_APERTURE, light_moves.MAX_APERTURE),)
+        )
+        self.intensity = self._slider(
+            "intensity", "Intensity", ((0, 3),), decimals=2, step=0.05, limits=(0, 100)
+        )
+        self.technique = self._technique_menu()
+        self.own = Section("", "technique")
+        self.more = Section("More", "light_more")
+        self.color = ColorButton("Colour of the lamp")
+        self._controls: list[ParamControl] = []
+        self._technique_type: type | None = None
+        for widget in (self.lamps, self.dial, self.tilt, self.rotation, self.aperture, self.intensity):
+            self.add(widget)
+        self.add(_row("Technique", self.technique))
+        self.add(self.own)
+        self.add(self.more)
+        self.finish()
+        self._connect()
+        self.refresh()
+
+    # -- building ---------------------------------------------------------------------------------
+    def _slider(self, field: str, label: str, pieces: tuple[tuple[float, float], ...], *, decimals: int = 1,
+                step: float = 1.0, limits: tuple[float, float] | None = None) -> LabelledSlider:  # fmt: skip
+        declared = fields_of(Light)[field]
+        assert declared.param is not None
+        return LabelledSlider(
+            label, pieces, float(declared.default), unit=declared.param.unit, tip=tooltip_of(declared.param),
+            decimals=decimals, step=step, limits=limits,
+        )  # fmt: skip
+
+    def _technique_menu(self) -> ChoiceBox:
+        box = ChoiceBox()
+        box.setAccessibleName("Technique")
+        for i, technique in enumerate(techniques().values()):
+            box.addItem(technique.title, technique.id)
+            box.setItemData(i, technique.summary, Qt.ItemDataRole.ToolTipRole)
+        return box
+
+    def _connect(self) -> None:
+        editor = self._editor
+        self.tilt.edited.connect(self._set_tilt)
+        self.rotation.edited.connect(lambda v: self._set(self.rotation, MOVE, "rotation", v))
+        self.aperture.edited.connect(self._set_aperture)
+        self.intensity.edited.connect(
+            lambda v: self._set(self.intensity, "Change the intensity", "intensity", v)
+        )
+        for slider, label in (
+            (self.tilt, MOVE), (self.rotation, MOVE), (self.aperture, SOFTEN), (self.intensity, "Change the intensity"),
+        ):  # fmt: skip
+            slider.drag_started.connect(lambda label=label: editor.begin(label))
+            slider.drag_finished.connect(editor.end)
+        self.technique.activated.connect(self._choose_technique)
+        self.color.picked.connect(lambda rgb: editor.change_light("Colour the lamp", True, color=rgb))
+        editor.changed.connect(self._on_changed)
+        editor.light_selected.connect(self._show_light)
+
+    # -- edits ------------------------------------------------------------------------------------
+    def _set(self, slider: LabelledSlider, label: str, field: str, value: float) -> None:
+        self._editor.change_light(label, not slider.slider.isSliderDown(), **{field: value})
+        self._show_light()
+
+    def _set_tilt(self, value: float) -> None:
+        light = self._editor.light
+        if light is not None:
+            self._set(self.tilt, MOVE, "tilt", nearest_possible_tilt(value, light.aperture))
+
+    def _set_aperture(self, value: float) -> None:
+        light = self._editor.light
+        if light is not None:
+            self._set(self.aperture, SOFTEN, "aperture", min(value, light_moves.largest_aperture(light.tilt)))
+
+    def _choose_technique(self, index: int) -> None:
+        wanted = self.technique.itemData(index)
+        if wanted != self._editor.scene.technique_id:
+            self._editor.change("Choose the technique", technique=wanted)
+            self.own.set_open(self.own.isVisibleTo(self))
+
+    # -- showing ----------------------------------------------------------------------------------
+    def refresh(self) -> None:
+        """Show everything anew."""
+        self._show_light()
+        self._show_technique(self._editor.scene)
+
+    def _on_changed(self, old: Scene, new: Scene) -> None:
+        if old.lights != new.lights:
+            self._show_light()
+        if old.technique != new.technique:
+            self._show_technique(new)
+
+    def _show_light(self) -> None:
+        light = self._editor.light
+        for widget in (self.tilt, self.rotation, self.aperture, self.intensity, self.color):
+            widget.setEnabled(light is not None)
+        if light is None:
+            return
+        self.tilt.slider.set_pieces(light_moves.tilt_ranges(light.aperture))
+        self.tilt.set_number(light.tilt)
+        self.rotation.set_number(light.rotation if light.rotation == 360 else light.rotation % 360)
+        self.aperture.set_number(light.aperture)
+        self.intensity.set_number(light.intensity)
+        self.color.set_color(light.color)
+
+    def _show_technique(self, scene: Scene) -> None:
+        technique = techniques()[scene.technique_id]
+        self.technique.setCurrentIndex(self.technique.findData(technique.id))
+        self.technique.setToolTip(technique.summary)
+        if self._technique_type is not type(scene.technique):
+            self._technique_type = type(scene.technique)
+            self._rebuild(technique.title)
+        for control in self._controls:
+            control.show_value()
+
+    def _rebuild(self, title: str) -> None:
+        """Make the technique's own controls: its essentials in its section, the rest under More."""
+        fields = fields_of(type(self._editor.scene.technique))
+        essential = controls_for(fields, "essential", self._editor, "technique.")
+        rest = controls_for(fields, "more", self._editor, "technique.")
+        self.color.setParent(self)
+        self.own.clear()
+        self.more.clear()
+        self.own.set_title(title)
+        self.own.setVisible(bool(essential))
+        for control in essential:
+            self.own.add(control)
+        self._color_row = _row("Lamp colour", self.color)
+        self.more.add(self._color_row)
+        for control in rest:
+            self.more.add(control)
+        self._controls = essential + rest
+        self.rebuilt.emit()
+
+
+def _row(label: str, widget: QWidget) -> QWidget:
+    row = QWidget()
+    layout = QHBoxLayout(row)
+    layout.setContentsMargins(0, 0, 0, 0)
+    layout.setSpacing(8)
+    layout.addWidget(QLabel(label))
+    layout.addWidget(widget, 1)
+    return row

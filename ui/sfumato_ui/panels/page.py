@@ -1,0 +1,50 @@
+"""What the tabs share: a column of controls that scrolls when the window is low."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import QFrame, QLabel, QScrollArea, QVBoxLayout, QWidget
+
+
+class Page(QScrollArea):
+    """A scrolling column."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        inside = QWidget()
+        inside.setObjectName("PanelPage")
+        self.column = QVBoxLayout(inside)
+        self.column.setContentsMargins(14, 10, 14, 10)
+        self.verticalScrollBar().rangeChanged.connect(self._keep_width)
+        self.column.setSpacing(6)
+        self.setWidget(inside)
+
+    def _keep_width(self, low: int, high: int) -> None:
+        """Take the scroll bar's room from the margin, so that nothing moves when it comes and goes."""
+        bar = self.verticalScrollBar().sizeHint().width() if high > low else 0
+        self.column.setContentsMargins(14, 10, 14 - bar, 10)
+
+    def add(self, widget: QWidget) -> None:
+        """Put a widget at the column's end."""
+        self.column.addWidget(widget)
+
+    def add_heading(self, text: str) -> None:
+        """Put a heading at the column's end."""
+        label = QLabel(text)
+        label.setProperty("heading", True)
+        self.column.addWidget(label)
+
+    def finish(self) -> None:
+        """Let what is left of the height stay below the controls."""
+        self.column.addStretch(1)
+
+    def refresh_theme(self) -> None:
+        """Let every control take the theme's icon colours."""
+        for child in self.widget().findChildren(QWidget):
+            refresh = getattr(child, "refresh_theme", None)
+            if refresh is not None:
+                refresh()

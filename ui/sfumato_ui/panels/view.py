@@ -1,0 +1,159 @@
+"""The View tab: standard views, projection and lens, exposure, background; sampling and theme under More."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtWidgets import (
+    QButtonGroup,
+    QCheckBox,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from sfumato import Camera, Scene
+from sfumato.scene import STANDARD_VIEWS, fields_of
+
+from .. import camera_moves
+from ..editing import Editor
+from ..generated import ChoiceBox, bind_slider, slider_for
+from ..section import Section
+from ..theme import THEMES, current_theme
+from .page import Page
+
+#: Linear RGBA by name; without a background the window shows its grey, and a saved picture can be transparent.
+BACKGROUNDS = {
+    "None": (0.0, 0.0, 0.0, 0.0),
+    "Black": (0.0, 0.0, 0.0, 1.0),
+    "Grey": (0.216, 0.216, 0.216, 1.0),
+    "White": (1.0, 1.0, 1.0, 1.0),
+}
+
+
+class ViewPage(Page):
+    """From where, through which lens, how bright, on what."""
+
+    theme_chosen = Signal(str)
+    #: The user asked to see the whole subject from a side ("" keeps the side).
+    view_chosen = Signal(str)
+
+    def __init__(self, editor: Editor) -> None:
+        super().__init__()
+        self._editor = editor
+        self.views = self._view_buttons()
+        self.parallel = QCheckBox("Orthographic")
+        self.parallel.setToolTip("Parallel projection: no foreshortening, lengths can be compared")
+        self.lens = slider_for(fields_of(Camera)["view_angle"])
+        self.exposure = slider_for(fields_of(Scene)["exposure"])
+        self.step = slider_for(fields_of(Scene)["step"])
+        self.background = QButtonGroup(self)
+        self.more = Section("More", "view_more")
+        self.theme = ChoiceBox()
+        self.add_heading("Camera")
+        self.add(self.views)
+        self.add(self.parallel)
+        self.add(self.lens)
+        self.add_heading("Picture")
+        self.add(self.exposure)
+        self.add(self._background_row())
+        self.add(self.more)
+        self.more.add(self.step)
+        self.more.add(self._theme_row())
+        self.finish()
+        self._connect()
+        self.refresh()
+
+    # -- building ---------------------------------------------------------------------------------
+    def _view_buttons(self) -> QWidget:
+        box = QWidget()
+        grid = QGridLayout(box)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setSpacing(6)
+        for i, name in enumerate(STANDARD_VIEWS):
+            button = QPushButton(name.capitalize())
+            button.setProperty("compact", True)
+            button.setAccessibleName(f"View from the {name}")
+            button.setToolTip(f"See the whole from the {name} ({i + 1})")
+            button.clicked.connect(lambda _=False, name=name: self.view_chosen.emit(name))
+            grid.addWidget(button, i // 3, i % 3)
+        return box
+
+    def _background_row(self) -> QWidget:
+        row = QWidget()
+        column = QVBoxLayout(row)
+        column.setContentsMargins(0, 2, 0, 4)
+        column.setSpacing(4)
+        column.addWidget(QLabel("Background"))
+        layout = QHBoxLayout()
+        layout.setSpacing(6)
+        column.addLayout(layout)
+        for i, name in enumerate(BACKGROUNDS):
+            button = QPushButton(name)
+            button.setCheckable(True)
+            button.setAccessibleName(f"Background: {name}")
+            button.setProperty("compact", True)
+            self.background.addButton(button, i)
+            layout.addWidget(button, 1)
+        return row
+
+    def _theme_row(self) -> QWidget:
+        row = QWidget()
+        layout = QHBoxLayout(row)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(QLabel("Theme"))
+        self.theme.setAccessibleName("Theme")
+        for name in THEMES:
+            self.theme.addItem(name.capitalize(), name)
+        layout.addWidget(self.theme, 1)
+        return row
+
+    def _connect(self) -> None:
+        editor = self._editor
+        self.parallel.toggled.connect(self._set_parallel)
+        self.lens.edited.connect(self._set_lens)
+        self.lens.drag_started.connect(lambda: editor.begin("Change the lens"))
+        self.lens.drag_finished.connect(editor.end)
+        bind_slider(self.exposure, editor, "exposure", "exposure")
+        bind_slider(self.step, editor, "step", "sampling")
+        self.background.idClicked.connect(
+            lambda i: editor.change("Change the background", background=tuple(BACKGROUNDS.values())[i])
+        )
+        self.theme.activated.connect(lambda i: self.theme_chosen.emit(self.theme.itemData(i)))
+        editor.changed.connect(lambda old, new: self.refresh())
+
+    # -- edits and showing ------------------------------------------------------------------------
+    def _set_parallel(self, on: bool) -> None:
+        camera = self._editor.scene.camera
+        if camera is not None:
+            self._editor.change("Change the projection", camera=camera_moves.with_projection(camera, on))
+
+    def _set_lens(self, angle: float) -> None:
+        camera = self._editor.scene.camera
+        if camera is not None:
+            angle = max(1.0, min(160.0, angle))
+            changed = camera_moves.with_lens(camera, angle)
+            self._editor.change("Change the lens", not self.lens.slider.isSliderDown(), camera=changed)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the scene's values."""
+        scene = self._editor.scene
+        self.exposure.set_number(scene.exposure)
+        self.step.set_number(scene.step)
+        self.background.setExclusive(False)
+        for i, color in enumerate(BACKGROUNDS.values()):
+            self.background.button(i).setChecked(color == scene.background)
+        self.background.setExclusive(True)
+        self.theme.setCurrentIndex(self.theme.findData(current_theme().name, Qt.ItemDataRole.UserRole))
+        camera = scene.camera
+        for widget in (self.views, self.parallel, self.lens):
+            widget.setEnabled(camera is not None)
+        if camera is not None:
+            self.parallel.blockSignals(True)
+            self.parallel.setChecked(camera.parallel_projection)
+            self.parallel.blockSignals(False)
+            self.lens.set_number(camera.view_angle)
+            self.lens.setEnabled(not camera.parallel_projection)

@@ -1,0 +1,67 @@
+"""The line below the picture: what is shown, how fast, by what, and how far the refinement is."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QSizePolicy
+
+from sfumato import Volume
+
+from .worker import STILL_FRAMES, Picture
+
+
+class StatusLine(QFrame):
+    """One line of small facts."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("StatusLine")
+        self.data = QLabel()
+        self.state = QLabel()
+        self.renderer = QLabel()
+        self.renderer.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.renderer.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.bar = QProgressBar()
+        self.bar.setRange(0, 1000)
+        self.bar.setTextVisible(False)
+        self.bar.setFixedWidth(90)
+        self.bar.setAccessibleName("Refinement of the picture")
+        keep = self.bar.sizePolicy()
+        keep.setRetainSizeWhenHidden(True)
+        self.bar.setSizePolicy(keep)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(14, 3, 14, 3)
+        row.setSpacing(18)
+        row.addWidget(self.data)
+        row.addWidget(self.state)
+        row.addWidget(self.bar)
+        row.addWidget(self.renderer, 1)
+        self.bar.hide()
+
+    def show_volume(self, volume: Volume | None) -> None:
+        """Say what is open."""
+        if volume is None:
+            self.data.setText("Nothing open")
+            return
+        x, y, z = volume.dims
+        spacing = " × ".join(f"{s:.3g}" for s in volume.spacing)
+        self.data.setText(f"{x} × {y} × {z}")
+        self.data.setToolTip(f"{volume.data.dtype}, spacing {spacing} mm")
+
+    def show_picture(self, picture: Picture) -> None:
+        """Say how the newest picture came about."""
+        width, height = picture.image.width(), picture.image.height()
+        kind = "moving" if picture.interactive else f"frame {picture.frames} of {STILL_FRAMES}"
+        self.state.setText(f"{1000 * picture.seconds:.0f} ms   {width} × {height}   {kind}")
+        if picture.settled:
+            self.bar.hide()
+
+    def show_progress(self, fraction: float) -> None:
+        """Show how far the refinement is (0 to 1)."""
+        self.bar.setValue(round(1000 * fraction))
+        self.bar.setVisible(fraction < 1)
+
+    def show_renderer(self, name: str) -> None:
+        """Name the graphics device; the whole name in the tooltip."""
+        self.renderer.setText(name.split(" (")[0])
+        self.renderer.setToolTip(name)

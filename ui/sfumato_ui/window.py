@@ -1,0 +1,276 @@
+"""The main window: the picture, with strip, panel, bars and their wiring.
+
+How it hangs together: every control edits the document through `Editor`; `Editor.changed` makes the panels
+show the new scene and `ViewDriver` ask the worker for its picture; the worker's thread sends pictures back
+as queued signals. `Files` opens and saves.
+"""
+
+from __future__ import annotations
+
+import time
+
+from qtpy.QtCore import QEvent, QEventLoop, Qt
+from qtpy.QtGui import (
+    QCloseEvent,
+    QDragEnterEvent,
+    QDropEvent,
+    QKeyEvent,
+    QKeySequence,
+    QResizeEvent,
+    QShortcut,
+)
+from qtpy.QtWidgets import QApplication, QGridLayout, QMainWindow, QTabWidget, QWidget
+
+from sfumato import Document, Scene
+from sfumato.scene import STANDARD_VIEWS
+from sfumato.scene.presets import suggest_view
+
+from . import camera_moves
+from .bars import ToolStrip, TopBar
+from .driver import ViewDriver
+from .editing import Editor
+from .files import Files
+from .messages import MessageBar
+from .panels.light import LightPage
+from .panels.material import MaterialPage
+from .panels.view import ViewPage
+from .settings import settings
+from .status import StatusLine
+from .tab_order import set_tab_order
+from .theme import apply_theme
+from .viewport import Viewport
+from .worker import Picture, RenderWorker
+
+PANEL_WIDTH = 320
+HINT = "Shift-drag moves the light"
+#: Longest wait in seconds for the render thread when the window closes; events go on meanwhile.
+CLOSE_SECONDS = 5.0
+
+
+class MainWindow(QMainWindow):
+    """One window on one document.
+
+    Parameters
+    ----------
+    document : Document, optional
+        What it shows; an empty one if not given.
+    """
+
+    def __init__(self, document: Document | None = None) -> None:
+        super().__init__()
+        self.setAcceptDrops(True)
+        self.editor = Editor(document or Document(Scene()), self)
+        self.viewport = Viewport(self.editor)
+        self.messages = MessageBar(self.viewport)
+        self.worker = RenderWorker()
+        self.driver = ViewDriver(self.editor, self.viewport, self.worker)
+        self.files = Files(self, self.editor, self.viewport, self.worker, self.messages)
+        self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
+        self.light_page, self.material_page = LightPage(self.editor), MaterialPage(self.editor)
+        self.view_page = ViewPage(self.editor)
+        self._closed = False
+        self._lay_out()
+        self._connect()
+        self._add_shortcuts()
+        self._restore()
+        self._show_document()
+        self.worker.start()
+
+    # -- building ---------------------------------------------------------------------------------
+    def _lay_out(self) -> None:
+        self.panel = QTabWidget()
+        self.panel.setObjectName("Panel")
+        self.panel.setDocumentMode(True)
+        self.panel.setFixedWidth(PANEL_WIDTH)
+        self.panel.tabBar().setDrawBase(False)
+        self.panel.tabBar().setAccessibleName("Panels")
+        for page, name in (
+            (self.light_page, "Light"),
+            (self.material_page, "Material"),
+            (self.view_page, "View"),
+        ):
+            self.panel.addTab(page, name)
+        middle = QWidget()
+        grid = QGridLayout(middle)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setSpacing(0)
+        grid.addWidget(self.top, 0, 0, 1, 3)
+        grid.addWidget(self.strip, 1, 0)
+        grid.addWidget(self.viewport, 1, 1)
+        grid.addWidget(self.panel, 1, 2)
+        grid.addWidget(self.status, 2, 0, 1, 3)
+        grid.setRowStretch(1, 1)
+        grid.setColumnStretch(1, 1)
+        self.setCentralWidget(middle)
+        set_tab_order(middle)
+        self.viewport.setFocus()
+
+    def _connect(self) -> None:
+        editor, worker = self.editor, self.worker
+        self.top.open.clicked.connect(self.files.ask_to_open)
+        self.top.save.clicked.connect(lambda: self.files.save_scene())
+        self.top.picture.clicked.connect(self.files.ask_to_save_picture)
+        self.top.unlit.connect(self.driver.set_unlit)
+        self.strip.chosen.connect(self._choose_tool)
+        self.strip.fit.clicked.connect(lambda: self.look(""))
+        self.view_page.view_chosen.connect(self.look)
+        self.view_page.theme_chosen.connect(self.set_theme)
+        self.light_page.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
+        self.viewport.lamp_moved.connect(self._hint_done)
+        self.viewport.resized.connect(self.messages.place)
+        editor.changed.connect(lambda old, new: self._show_title())
+        editor.history_changed.connect(self._show_title)
+        editor.rejected.connect(self.messages.show_error)
+        worker.picture.connect(self._on_picture)
+        worker.progress.connect(self.status.show_progress)
+        worker.ready.connect(self.status.show_renderer)
+        worker.failed.connect(self._on_render_failed)
+        self.files.opened.connect(self._show_document)
+        self.files.scene_saved.connect(self._show_title)
+
+    def _add_shortcuts(self) -> None:
+        for keys, act in {
+            "Ctrl+O": self.files.ask_to_open, "Ctrl+Shift+O": self.files.ask_to_open_folder,
+            "Ctrl+S": lambda: self.files.save_scene(), "Ctrl+E": self.files.ask_to_save_picture,
+            "Ctrl+Z": self.editor.undo, "Ctrl+Shift+Z": self.editor.redo, "Ctrl+Y": self.editor.redo,
+            "Home": lambda: self.look(""), "Esc": lambda: self.strip.choose("orbit"), "L": lambda: self.strip.choose("light"),
+        }.items():  # fmt: skip
+            QShortcut(QKeySequence(keys), self, activated=act)
+        for i, view in enumerate(STANDARD_VIEWS):
+            QShortcut(QKeySequence(str(i + 1)), self, activated=lambda view=view: self.look(view))
+
+    def _restore(self) -> None:
+        kept = settings()
+        geometry = kept.value("window/geometry")
+        if geometry is None or not self.restoreGeometry(geometry):
+            self.resize(1280, 720)
+        if not kept.value("hint/light_seen", False, type=bool):
+            self.viewport.set_hint(HINT)
+
+    # -- showing ----------------------------------------------------------------------------------
+    def _show_document(self) -> None:
+        """Show another document from scratch."""
+        for page in (self.light_page, self.material_page, self.view_page):
+            page.refresh()
+        self.light_page.lamps.refresh()
+        self.status.show_volume(self.editor.scene.volume)
+        self.top.refresh()
+        self._show_title()
+        self.driver.ask()
+
+    def _show_title(self) -> None:
+        name = self.files.name
+        self.setWindowTitle(f"{name}[*] – Sfumato" if name else "Sfumato[*]")
+        self.setWindowModified(self.editor.document.modified)
+
+    def _on_picture(self, picture: Picture) -> None:
+        self.messages.clear("render error")
+        self.status.show_picture(picture)
+
+    def _on_render_failed(self, message: str) -> None:
+        self.messages.show_error(
+            f"{message}. The last good picture stays; undo, or choose another technique."
+        )
+
+    def set_theme(self, name: str) -> None:
+        """Show the window in another theme, and remember it."""
+        app = QApplication.instance()
+        assert isinstance(app, QApplication)
+        settings().setValue("window/theme", apply_theme(app, name).name)
+        for part in (
+            self.top,
+            self.strip,
+            self.messages,
+            self.light_page,
+            self.material_page,
+            self.view_page,
+        ):
+            part.refresh_theme()
+        self.view_page.refresh()
+        self.viewport.update()
+
+    # -- acting -----------------------------------------------------------------------------------
+    def open(self, path: str) -> None:
+        """Open a file, a folder or a sample."""
+        self.files.open(path)
+
+    def look(self, view: str) -> None:
+        """See the whole subject from a standard view, or from where the camera stands if none is named."""
+        scene = self.editor.scene
+        if scene.volume is None or scene.camera is None:
+            return
+        whole = suggest_view(scene.volume, scene.transfer)
+        camera = camera_moves.fitted(scene.camera, whole, view)
+        self.editor.change(f"View from the {view}" if view else "See the whole", camera=camera)
+
+    def _choose_tool(self, name: str) -> None:
+        self.viewport.tool = name
+
+    def _hint_done(self) -> None:
+        if self.viewport.hint:
+            self.viewport.set_hint("")
+            settings().setValue("hint/light_seen", True)
+
+    # -- events -----------------------------------------------------------------------------------
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """B shows the unlit picture while it is held."""
+        if event.key() == Qt.Key.Key_B and not event.modifiers():
+            if not event.isAutoRepeat():
+                self.driver.set_unlit(True)
+            return
+        super().keyPressEvent(event)
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        """End the unlit picture."""
+        if event.key() == Qt.Key.Key_B and not event.isAutoRepeat():
+            self.driver.set_unlit(False)
+            return
+        super().keyReleaseEvent(event)
+
+    def changeEvent(self, event: QEvent) -> None:
+        """End the unlit picture when another window takes the keys."""
+        if event.type() == QEvent.Type.ActivationChange and not self.isActiveWindow():
+            self.driver.set_unlit(False)
+        super().changeEvent(event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep the message bar in its place."""
+        super().resizeEvent(event)
+        self.messages.place()
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        """Take files and folders."""
+        if any(url.isLocalFile() for url in event.mimeData().urls()):
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        """Open the first file or folder that was dropped."""
+        paths = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
+        if paths:
+            event.acceptProposedAction()
+            self.open(paths[0])
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Ask about unsaved work, then end the threads without freezing."""
+        if self._closed:
+            return
+        if not self.files.may_leave():
+            event.ignore()
+            return
+        self._closed = True
+        settings().setValue("window/geometry", self.saveGeometry())
+        self.hide()
+        self.driver.stop()
+        self.editor.close()
+        self.files.loader.cancel()
+        self.worker.ask_to_stop()
+        _wait_for(self.worker)
+        event.accept()
+
+
+def _wait_for(worker: RenderWorker) -> None:
+    """Go on with events until the render thread has ended, for a bounded time."""
+    until = time.monotonic() + CLOSE_SECONDS
+    while worker.alive and time.monotonic() < until:
+        QApplication.processEvents(QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents, 20)
+        time.sleep(0.005)

@@ -1,0 +1,237 @@
+"""The thread that renders: it always takes the newest request, and nobody waits for it.
+
+While the user interacts, a request is drawn once at drag quality, and finished even if a newer one is
+there: a hand that keeps moving must see pictures. When the scene is still, full quality follows and
+jittered frames accumulate; that work is dropped within one piece (some 50 ms) when a newer scene comes.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from qtpy.QtCore import QObject, QThread, Signal
+from qtpy.QtGui import QImage
+
+from sfumato import Scene, SfumatoError
+from sfumato.techniques.frame import FULL, Quality
+
+#: Jittered frames that a still picture accumulates.
+STILL_FRAMES = 8
+#: Qualities while the user drags, finest first; the worker keeps to the finest that is quick enough.
+DRAG_LADDER = (
+    Quality(scale=0.5, step=2.0, light=2.0),
+    Quality(scale=0.35, step=3.0, light=3.0),
+    Quality(scale=0.25, step=4.0, light=4.0),
+)
+#: A drag frame slower than this, in seconds, makes the next one coarser; one quicker than a fifth, finer.
+DRAG_SECONDS = 0.25
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A finished picture and how it came about."""
+
+    image: QImage
+    scene: Scene
+    size: tuple[int, int]
+    seconds: float
+    frames: int
+    interactive: bool
+
+    @property
+    def settled(self) -> bool:
+        """Whether no better picture of this scene will follow."""
+        return not self.interactive and self.frames >= STILL_FRAMES
+
+
+@dataclass(frozen=True)
+class ViewRequest:
+    """The window wants to see this scene at this size in pixels."""
+
+    scene: Scene
+    size: tuple[int, int]
+    interactive: bool
+
+
+@dataclass(frozen=True)
+class SaveRequest:
+    """A picture at full quality is to be handed to ``write`` on the worker's thread."""
+
+    scene: Scene
+    size: tuple[int, int]
+    frames: int
+    write: Callable[[np.ndarray], None]
+    done: str
+
+
+class RenderWorker(QObject):
+    """Owns the renderer and its thread; the methods are called from the window's thread."""
+
+    picture = Signal(object)
+    progress = Signal(float)
+    #: The renderer is there (its name).
+    ready = Signal(str)
+    #: Something went wrong: one line; the worker lives on.
+    failed = Signal(str)
+    saved = Signal(str)
+    save_progress = Signal(float)
+    save_cancelled = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._renderer: Any = None
+        self._wake = threading.Condition()
+        self._view: ViewRequest | None = None
+        self._save: SaveRequest | None = None
+        self._cancel_save = False
+        self._stopping = False
+        self._rung = 0
+        self._thread = threading.Thread(target=self._run, name="sfumato-render", daemon=True)
+
+    # -- called by the window ---------------------------------------------------------------------
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    def show(self, request: ViewRequest) -> None:
+        """Ask for a picture; an older wish that has not begun is forgotten."""
+        with self._wake:
+            self._view = request
+            self._wake.notify()
+
+    def save(self, request: SaveRequest) -> None:
+        """Ask for a picture to be written."""
+        with self._wake:
+            self._save, self._cancel_save = request, False
+            self._wake.notify()
+
+    def cancel_save(self) -> None:
+        """Give up the picture that is being written."""
+        self._cancel_save = True
+
+    def ask_to_stop(self) -> None:
+        """Ask the thread to end after the piece of work that it is in."""
+        with self._wake:
+            self._stopping = True
+            self._wake.notify()
+
+    @property
+    def alive(self) -> bool:
+        """Whether the thread still runs."""
+        return self._thread.is_alive()
+
+    # -- the thread -------------------------------------------------------------------------------
+    def _run(self) -> None:
+        # Qt adopts this thread for the length of its signals; the window's thread has precedence.
+        QThread.currentThread()
+        try:
+            while not self._stopping:
+                self._next_job()
+        finally:
+            if self._renderer is not None:
+                self._renderer.close()
+
+    def _next_job(self) -> None:
+        with self._wake:
+            while not (self._stopping or self._view or self._save):
+                self._wake.wait()
+            save, self._save = self._save, None
+            view = None
+            if save is None:
+                view, self._view = self._view, None
+        if self._stopping:
+            return
+        try:
+            renderer = self._ensure_renderer()
+            if save is not None:
+                self._write(renderer, save)
+            elif view is not None:
+                self._draw(renderer, view)
+        except Exception as error:
+            if not self._stopping:
+                self.failed.emit(one_line(error))
+
+    def _ensure_renderer(self) -> Any:
+        if self._renderer is None:
+            from sfumato import Renderer
+
+            self._renderer = Renderer()
+            self.ready.emit(self._renderer.name)
+        return self._renderer
+
+    def _draw(self, renderer: Any, request: ViewRequest) -> None:
+        quality = DRAG_LADDER[self._rung] if request.interactive else FULL
+        with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
+            for index in range(1 if request.interactive else STILL_FRAMES):
+                started = time.perf_counter()
+                for done in accumulation.add_frame():
+                    if self._stopping or self._outdated(request):
+                        return
+                    if not request.interactive:
+                        self.progress.emit((index + done) / STILL_FRAMES)
+                seconds = time.perf_counter() - started
+                self.picture.emit(_picture(accumulation, request, seconds))
+                if request.interactive:
+                    self._choose_rung(seconds)
+        self.progress.emit(1.0)
+
+    def _outdated(self, request: ViewRequest) -> bool:
+        """Tell whether to drop the work for a request: a drag's frame is dropped only for other data."""
+        newer = self._view
+        if newer is None:
+            return self._save is not None and not request.interactive
+        return not request.interactive or newer.scene.volume is not request.scene.volume
+
+    def _choose_rung(self, seconds: float) -> None:
+        if seconds > DRAG_SECONDS:
+            self._rung = min(self._rung + 1, len(DRAG_LADDER) - 1)
+        elif seconds < DRAG_SECONDS / 5:
+            self._rung = max(self._rung - 1, 0)
+
+    def _write(self, renderer: Any, request: SaveRequest) -> None:
+        with _accumulation(renderer, request.scene, request.size, FULL) as accumulation:
+            for index in range(request.frames):
+                for done in accumulation.add_frame():
+                    if self._stopping or self._cancel_save:
+                        self.save_cancelled.emit()
+                        return
+                    self.save_progress.emit((index + done) / request.frames)
+            request.write(accumulation.picture())
+        self.saved.emit(request.done)
+
+
+@contextmanager
+def _accumulation(renderer: Any, scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Any]:
+    accumulation = renderer.begin(scene, size, quality=quality)
+    try:
+        yield accumulation
+    finally:
+        accumulation.release()
+        renderer.device.collect()
+
+
+def _picture(accumulation: Any, request: ViewRequest, seconds: float) -> Picture:
+    pixels = np.ascontiguousarray(accumulation.picture())
+    height, width = pixels.shape[:2]
+    image = QImage(pixels.data, width, height, 4 * width, QImage.Format.Format_RGBA8888)
+    # Converted here, which also copies, so that the window's thread has nothing left to do but to paint.
+    shown = image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
+    return Picture(shown, request.scene, request.size, seconds, accumulation.frames, request.interactive)
+
+
+def one_line(error: BaseException) -> str:
+    """Return an error in one line for people; unexpected ones with their kind and place."""
+    if isinstance(error, SfumatoError):
+        return str(error).splitlines()[0]
+    if isinstance(error, MemoryError):
+        return "Not enough memory for this; close other programs or make the picture smaller"
+    frame = traceback.extract_tb(error.__traceback__)[-1]
+    text = (str(error).splitlines() or [""])[0]
+    return f"{type(error).__name__}: {text} ({frame.filename.rsplit('/', 1)[-1]}, line {frame.lineno})"
