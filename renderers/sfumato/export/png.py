@@ -47,7 +47,11 @@ def write_png(path: str | os.PathLike[str], picture: np.ndarray, scene: Scene | 
     from PIL.PngImagePlugin import PngInfo
 
     if picture.dtype != np.uint8 or picture.ndim != 3 or picture.shape[2] != 4 or picture.size == 0:
-        raise SceneError("picture", f"array of shape {picture.shape} and type {picture.dtype}", "uint8 of shape (height, width, 4)")
+        raise SceneError(
+            "picture",
+            f"array of shape {picture.shape} and type {picture.dtype}",
+            "uint8 of shape (height, width, 4)",
+        )
     chunks = PngInfo()
     chunks.add(b"sRGB", b"\0")
     if scene is not None:
@@ -80,10 +84,14 @@ def read_scene_data(path: str | os.PathLike[str]) -> dict[str, Any]:
             text = _find_text(stream)
     except OSError as error:
         raise LoadError(path, error.strerror or str(error), "check the path") from None
-    except (ValueError, struct.error, zlib.error) as error:
+    except struct.error:
+        raise LoadError(path, "this PNG ends too soon", "open a picture that Sfumato wrote") from None
+    except (ValueError, zlib.error) as error:
         raise LoadError(path, f"not a readable PNG ({error})", "open a picture that Sfumato wrote") from None
     if text is None:
-        raise LoadError(path, "this picture carries no scene", "open a picture that Sfumato wrote, or a volume")
+        raise LoadError(
+            path, "this picture carries no scene", "open a picture that Sfumato wrote, or a volume"
+        )
     try:
         data = json.loads(text)["scene"]
     except (ValueError, KeyError, TypeError, RecursionError):
@@ -149,15 +157,21 @@ def _volume_beside(picture: Path, reference: Any) -> Volume:
 
     named = reference.get("path") if isinstance(reference, dict) else None
     if not isinstance(named, str) or not named:
-        raise LoadError(picture, "the scene in this picture does not say where its volume is", "name the volume too")
+        raise LoadError(
+            picture, "the scene in this picture does not say where its volume is", "name the volume too"
+        )
     # Only ever a name beside the picture: what a stranger's picture says is no path to follow.
     name = _file_name(named)
     place: str | Path = name if name.startswith(SAMPLE) else picture.parent / name
     if isinstance(place, Path) and not place.exists():
-        raise LoadError(picture, f"its volume {name!r} is not beside it", "put it there, or name the volume too")
+        raise LoadError(
+            picture, f"its volume {name!r} is not beside it", "put it there, or name the volume too"
+        )
     volume = load(place)
     if reference.get("hash") not in (None, volume.key):
-        raise LoadError(place, "this is not the volume of the picture (its content differs)", "name the right volume too")
+        raise LoadError(
+            place, "this is not the volume of the picture (its content differs)", "name the right volume too"
+        )
     return volume
 
 

@@ -94,9 +94,13 @@ class Field:
     default: Any
 
 
-@functools.cache
 def fields_of(cls: type) -> dict[str, Field]:
     """Return the fields of a frozen dataclass by name, with the parameters declared on them."""
+    return _fields_of(cls)
+
+
+@functools.cache
+def _fields_of(cls: type) -> dict[str, Field]:
     hints = typing.get_type_hints(cls, include_extras=True)
     found: dict[str, Field] = {}
     for field in dataclasses.fields(cls):

@@ -1,0 +1,130 @@
+"""The command line: what each command is called and takes; the work is done in the modules beside it."""
+
+from __future__ import annotations
+
+import importlib
+import json
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+import sfumato
+
+from .flags import SceneFlags, TechniqueFlags, changed, parse_size, widened
+from .opening import ReadFlags
+
+HELP = "Light for volumes: the window on PATH, or on the embedded sample."
+EPILOGUE = (
+    "--debug with any command shows tracebacks. Exit status: 0 done, 1 bad input or device, 2 wrong usage."
+)
+DEFAULT_SIZE = "1024x1024"
+
+app = App(
+    name="sfumato",
+    help=HELP,
+    help_epilogue=EPILOGUE,
+    version=sfumato.__version__,
+    help_format="plaintext",
+    suppress_keyboard_interrupt=False,
+    result_action="return_value",
+)
+
+
+@app.default
+def window(
+    path: Annotated[
+        str | None, Parameter(help="A volume, a DICOM folder, a scene file, or a picture of ours.")
+    ] = None,
+    /,
+) -> int:
+    """Show the window; without a screen, draw the same picture to sfumato-sample.png."""
+    from .window import show
+
+    return show(path)
+
+
+@app.command
+def render(
+    path: Annotated[str, Parameter(help="A volume, a DICOM folder, a scene file, or a picture of ours.")],
+    /,
+    *,
+    output: Annotated[
+        Path | None,
+        Parameter(name=["--output", "-o"], help="The picture (default: PATH's name with .png, here)."),
+    ] = None,
+    size: Annotated[str, Parameter(help="Width and height in pixels.")] = DEFAULT_SIZE,
+    linear: Annotated[
+        bool, Parameter(negative="", help="Linear light, before exposure, to .exr or .npy.")
+    ] = False,
+    volume: Annotated[
+        str | None, Parameter(help="The volume to use instead of the one that a scene or picture names.")
+    ] = None,
+    read: ReadFlags = ReadFlags(),  # noqa: B008
+    flags: SceneFlags = SceneFlags(),  # noqa: B008
+    own: TechniqueFlags = TechniqueFlags(),  # type: ignore[valid-type]  # noqa: B008
+) -> None:
+    """Draw a picture without a window."""
+    from .drawing import draw, target_of
+    from .opening import is_scene, open_scene
+
+    width, height = parse_size(size)
+    target, linear = target_of(path, output, linear)
+    aspect = width / max(1, height)
+    scene = open_scene(path, volume, read)
+    if not is_scene(path) and scene.camera is not None:
+        scene = scene.with_(camera=widened(scene.camera, aspect))
+    scene = changed(scene, flags, own, aspect)
+    print(draw(scene, (width, height), target, linear))
+
+
+@app.command
+def info(
+    path: Annotated[str, Parameter(help="A volume, a DICOM folder, a scene file, or a picture of ours.")],
+    /,
+    *,
+    read: ReadFlags = ReadFlags(),  # noqa: B008
+) -> None:
+    """Tell what a volume is; of a scene file or a picture of ours, its scene."""
+    from .opening import is_scene, open_volume
+    from .tables import print_volume, scene_data
+
+    if is_scene(path):
+        print(json.dumps(scene_data(path), indent=1))
+    else:
+        print_volume(path, open_volume(path, read))
+
+
+@app.command(name="techniques")
+def list_techniques(
+    *, json_: Annotated[bool, Parameter(name="--json", negative="", help="As JSON.")] = False
+) -> None:
+    """List the techniques and their parameters: units, ranges, defaults, sources."""
+    from .tables import print_techniques, techniques_data
+
+    if json_:
+        print(json.dumps(techniques_data(), indent=1))
+    else:
+        print_techniques()
+
+
+#: Commands with a command line of their own: name, module with ``main(arguments) -> int``, what they do.
+PROGRAMS = (
+    ("bench", "bench", "Measure the techniques on this machine."),
+    ("contact-sheet", "contact_sheet", "Draw every volume in a folder of data sets to one labelled sheet."),
+)
+
+
+def _add_program(name: str, module: str, meaning: str) -> None:
+    def program(*arguments: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> int:
+        return int(importlib.import_module(f"{__package__}.{module}").main(list(arguments)) or 0)
+
+    program.__doc__ = meaning
+    # Their help is their own: --help goes through.
+    app.command(program, name=name, help_flags=[], version_flags=[])
+
+
+for _name, _module, _meaning in PROGRAMS:
+    if find_spec(f"{__package__}.{_module}") is not None:
+        _add_program(_name, _module, _meaning)

@@ -1,0 +1,61 @@
+"""A scene to a picture file."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import sfumato
+from sfumato import Scene, SceneError
+from sfumato.export.linear import LINEAR_SUFFIXES, write_linear
+from sfumato.export.png import write_png
+
+from .errors import UsageError
+from .opening import SAMPLE
+
+
+def target_of(path: str, output: Path | None, linear: bool) -> tuple[Path, bool]:
+    """Return the file to write, and whether its picture is linear, which its ending can tell too.
+
+    Raises
+    ------
+    UsageError
+        If the ending does not fit.
+    """
+    if output is None:
+        output = Path(stem_of(path) + (".exr" if linear else ".png"))
+    suffix = output.suffix.lower()
+    if linear and suffix not in LINEAR_SUFFIXES:
+        raise UsageError(f"-o {output}: with --linear it must end in {' or '.join(LINEAR_SUFFIXES)}")
+    if suffix not in (".png", *LINEAR_SUFFIXES):
+        raise UsageError(f"-o {output}: it must end in .png, {' or '.join(LINEAR_SUFFIXES)}")
+    if output.exists() and Path(path).exists() and output.samefile(path):
+        raise UsageError(f"-o {output}: this is the input; give another name")
+    return output, suffix in LINEAR_SUFFIXES
+
+
+def stem_of(path: str) -> str:
+    """Return the name of a file or folder without its ending(s), for a picture of it."""
+    name = Path(path.removeprefix(SAMPLE)).resolve().name
+    for ending in (".gz", ".nii", ".ome.zarr"):
+        name = name.removesuffix(ending)
+    return name.rsplit(".", 1)[0] if "." in name.lstrip(".") else name
+
+
+def draw(scene: Scene, size: tuple[int, int], target: Path, linear: bool = False) -> str:
+    """Draw a scene, write it, and return a line that says so.
+
+    Raises
+    ------
+    SfumatoError
+        If it cannot be drawn or written.
+    """
+    if scene.volume is None and not scene.geometry:
+        raise SceneError("volume", None, "the scene shows nothing; name a volume")
+    if not target.parent.is_dir():
+        raise sfumato.SfumatoError(f"{target}: there is no folder {target.parent}")
+    began = time.perf_counter()
+    picture = sfumato.render(scene, size=size, linear=linear)
+    seconds = time.perf_counter() - began
+    (write_linear if linear else write_png)(target, picture, scene)
+    return f"{target}: {size[0]} x {size[1]}, {scene.technique_id}, {seconds:.1f} s"

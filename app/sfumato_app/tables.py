@@ -1,0 +1,133 @@
+"""What `info` and `techniques` print."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from sfumato import Scene, Volume
+from sfumato.scene import Field, fields_of
+from sfumato.techniques import Technique, techniques
+
+from .opening import SCENE_SUFFIX
+
+#: World axes in LPS: the letter where a coordinate grows, and where it falls.
+LETTERS = (("L", "R"), ("P", "A"), ("S", "I"))
+
+
+def _console() -> Console:
+    """Return a console that does not squeeze what goes to a file or a pipe."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=160)
+
+
+def orientation_of(volume: Volume) -> str:
+    """Return towards which side of the patient the array's axes x, y, z run, as in ``LPS``."""
+    if not volume.info.orientation_known:
+        return "not known"
+    letters = ""
+    for axis in range(3):
+        column = [volume.direction[row][axis] for row in range(3)]  # type: ignore[index]
+        main = max(range(3), key=lambda row: abs(column[row]))
+        letters += LETTERS[main][column[main] < 0]
+    return letters
+
+
+def _numbers(values: Any) -> str:
+    return " x ".join(f"{v:g}" for v in values)
+
+
+def volume_rows(volume: Volume) -> list[tuple[str, str]]:
+    """Return what there is to say about a volume, as names and values."""
+    low, high = volume.value_range
+    extent = [n * s for n, s in zip(volume.dims, volume.spacing, strict=True)]
+    rows = [
+        ("dims", _numbers(volume.dims)),
+        ("spacing", _numbers(volume.spacing) + " mm"),
+        ("extent", _numbers(round(e, 2) for e in extent) + " mm"),
+        ("type", str(volume.data.dtype)),
+        ("range", f"{low:g} to {high:g}" + (" HU" if volume.info.modality == "CT" else "")),
+        ("modality", volume.info.modality or "not known"),
+        ("orientation", orientation_of(volume)),
+        ("memory", f"{volume.data.nbytes / 2**20:.1f} MiB"),
+    ]
+    return rows + [("notice", text) for text in volume.info.notices]
+
+
+def print_volume(path: str, volume: Volume) -> None:
+    """Print what there is to say about a volume."""
+    table = Table(show_header=False, box=None, title=volume.info.name or path, title_justify="left")
+    for name, value in volume_rows(volume):
+        table.add_row(name, value)
+    _console().print(table)
+
+
+def scene_data(path: str) -> dict[str, Any]:
+    """Return the scene in a scene file or in a picture of ours, checked, as JSON data.
+
+    Raises
+    ------
+    LoadError, SceneError
+        If it cannot be read, or holds what a scene may not hold.
+    """
+    from sfumato import LoadError
+    from sfumato.export.png import read_scene_data
+
+    if Path(path).suffix.lower() != SCENE_SUFFIX:
+        data = read_scene_data(path)
+    else:
+        try:
+            data = json.loads(Path(path).read_text(encoding="utf-8"))
+        except OSError as error:
+            raise LoadError(path, error.strerror or str(error), "check the path") from None
+        except (ValueError, RecursionError) as error:
+            raise LoadError(path, f"not a scene file ({error})", "open a .sfumato file") from None
+    Scene.from_json(data)
+    return data
+
+
+def _parameter_data(field: Field) -> dict[str, Any]:
+    param = field.param
+    assert param is not None
+    return {
+        "name": field.name,
+        "meaning": param.meaning,
+        "unit": param.unit,
+        "allowed": param.allowed().removeprefix("allowed: "),
+        "default": field.default,
+        "source": param.source,
+    }
+
+
+def _technique_data(technique: Technique) -> dict[str, Any]:
+    declared = [f for f in fields_of(technique.params).values() if f.param is not None]
+    return {
+        "id": technique.id,
+        "title": technique.title,
+        "summary": technique.summary,
+        "source": technique.source,
+        "parameters": [_parameter_data(f) for f in declared],
+    }
+
+
+def techniques_data() -> list[dict[str, Any]]:
+    """Return all techniques with their parameters as JSON data."""
+    return [_technique_data(t) for t in techniques().values()]
+
+
+def print_techniques() -> None:
+    """Print the table of techniques and their parameters."""
+    table = Table(box=None, pad_edge=False)
+    for heading in ("technique, parameter", "meaning", "unit", "allowed", "default", "source"):
+        table.add_column(heading, overflow="fold")
+    for technique in techniques_data():
+        table.add_row(technique["id"], technique["summary"], "", "", "", technique["source"], style="bold")
+        for p in technique["parameters"]:
+            allowed = str(p["allowed"]).removeprefix("one of ")
+            table.add_row(f"  {p['name']}", p["meaning"], p["unit"], allowed, str(p["default"]), p["source"])
+        table.add_section()
+    _console().print(table)
