@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 
+_LOW, _HIGH, _EVEN, _ODD = slice(None, -1), slice(1, None), slice(0, None, 2), slice(1, None, 2)
+
+
 def grain(shape: tuple[int, int, int], seed: int) -> np.ndarray:
     """Return white noise of mean 0 and deviation 1, nearly normal, float32.
 
@@ -29,8 +32,11 @@ def smooth_noise(shape: tuple[int, int, int], cell: int, seed: int) -> np.ndarra
 
 
 def _doubled(field: np.ndarray, axis: int) -> np.ndarray:
-    field = np.moveaxis(field, axis, 0)
-    result = np.empty((2 * len(field) - 1, *field.shape[1:]), dtype=np.float32)
-    result[0::2] = field
-    result[1::2] = (field[:-1] + field[1:]) * np.float32(0.5)
-    return np.ascontiguousarray(np.moveaxis(result, 0, axis))
+    shape = list(field.shape)
+    shape[axis] = 2 * shape[axis] - 1
+    result = np.empty(shape, dtype=np.float32)
+    every = [slice(None)] * 3
+    low, high, even, odd = (tuple([*every[:axis], s, *every[axis + 1 :]]) for s in (_LOW, _HIGH, _EVEN, _ODD))
+    result[even] = field
+    result[odd] = (field[low] + field[high]) * np.float32(0.5)
+    return result

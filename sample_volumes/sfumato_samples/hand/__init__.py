@@ -17,7 +17,7 @@ from .bones import Skeleton, skeleton
 from .pose import FINGERS, long_bones
 from .skin import add_relief, nail_coordinates, surface
 
-GRID = Grid(low=(-78.0, -76.0, -36.0), dims=(184, 136, 288), spacing=0.8)
+GRID = Grid(low=(-66.0, -66.0, -36.0), dims=(160, 120, 284), spacing=0.8)
 SEED = 7
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from ..grid import Axes, Grid
 from ..sdf import Frame, capsule, ellipsoid, length, smooth_max, smooth_min, sphere
@@ -106,7 +105,13 @@ def _part(points: np.ndarray, margin: float, distance: Callable[[Axes], tuple[np
 def _profile(kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     t, width, depth = (np.asarray(row, dtype=float) for row in PROFILES[kind])
     fine = np.linspace(0, 1, 65)
-    return fine, PchipInterpolator(t, width)(fine), PchipInterpolator(t, depth)(fine)
+    return fine, _rounded(np.interp(fine, t, width)), _rounded(np.interp(fine, t, depth))
+
+
+def _rounded(table: np.ndarray) -> np.ndarray:
+    """Smooth the corners of a table, its ends kept."""
+    padded = np.concatenate([2 * table[0] - table[4:0:-1], table, 2 * table[-1] - table[-2:-6:-1]])
+    return np.convolve(padded, np.array([1, 2, 3, 4, 5, 4, 3, 2, 1]) / 25, mode="valid")
 
 
 def _long(bone: Bone) -> Part:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from ..field import WORLD, Field
 from ..grid import Grid
-from ..sdf import Frame, bump, capsule, ellipsoid, length, smooth_max, smooth_min
+from ..sdf import Frame, bump, length, smooth_max, smooth_min
 from .pose import FINGERS, Bone, long_bones
 
 #: Radius in mm at base joint, middle of the proximal phalanx, its head, the middle one's head, tip; middle finger.
 FINGER_RADII = (10.4, 9.5, 9.3, 8.0, 6.6)
 THUMB_RADII = (12.8, 10.4, 10.6, 9.0, 7.4)
-FAR = 14.0
 Line = tuple[tuple[float, float], ...]
 
 #: Palm creases (x, z): the line around the thumb, the head line, the heart line.
@@ -36,52 +34,24 @@ VEINS: tuple[Line, ...] = (
 )
 
 
-class Surface:
-    """A distance field that grows by smooth unions, each evaluated only near its body."""
-
-    def __init__(self, grid: Grid) -> None:
-        self.grid = grid
-        self.distance = grid.full(FAR)
-
-    def rod(self, start: Sequence[float], end: Sequence[float], radius: float, last: float, k: float) -> None:
-        """Add a tapered rod."""
-        ends = np.array([start, end], dtype=float)
-        window, axes = self.grid.window(ends.min(axis=0) - radius - 9, ends.max(axis=0) + radius + 9)
-        self.distance[window] = smooth_min(self.distance[window], capsule(axes, start, end, radius, last), k)
-
-    def pad(self, frame: Frame, center: Sequence[float], radii: Sequence[float], k: float) -> None:
-        """Add an ellipsoid along a frame's axes, its centre in the frame's coordinates."""
-        middle, reach = frame.world(center[0], center[1], center[2]), max(radii) + 9
-        window, axes = self.grid.window(middle - reach, middle + reach)
-        body = ellipsoid(frame.local(axes), center, radii)
-        self.distance[window] = smooth_min(self.distance[window], body, k)
-
-    def join(self, other: Surface, k: float) -> None:
-        """Add another surface."""
-        self.distance = smooth_min(self.distance, other.distance, k)
-
-
-WORLD = Frame.along((0, 0, 0), (0, 0, 1))
-
-
 def surface(grid: Grid) -> np.ndarray:
     """Return the distance to the smooth skin, without its fine relief."""
-    hand = Surface(grid)
+    hand = Field(grid)
     _palm(hand)
-    fingers = [Surface(grid) for _ in range(2)]
+    fingers = [Field(grid) for _ in range(2)]
     # Neighbours are joined sharply, so alternate fingers are kept apart until they are whole.
     for number in range(1, 5):
         _finger(fingers[number % 2], [b for b in long_bones() if b.finger == number])
     fingers[0].join(fingers[1], 0.8)
     _forearm(hand)
     hand.join(fingers[0], 7.0)
-    thumb = Surface(grid)
+    thumb = Field(grid)
     _thumb(thumb, [b for b in long_bones() if b.finger == 0])
     hand.join(thumb, 9.0)
     return hand.distance
 
 
-def _palm(hand: Surface) -> None:
+def _palm(hand: Field) -> None:
     metacarpals = [b for b in long_bones() if b.kind == "metacarpal" and b.finger]
     for bone in metacarpals:
         start, end = bone.frame.world(0, -3.5, 0), bone.frame.world(0, -2.8, bone.length)
@@ -97,7 +67,7 @@ def _palm(hand: Surface) -> None:
     hand.pad(Frame.along((-16, -13.0, 38), (-0.55, -0.40, 0.8)), (0, 0, 0), (14.5, 13.0, 25), 9.0)
 
 
-def _forearm(hand: Surface) -> None:
+def _forearm(hand: Field) -> None:
     x, y, z = hand.grid.axes()
     # Wider towards the elbow, and running out under the palm.
     waist = np.where(z < -4, np.float32(0.003), np.float32(-0.006)) * (z + 4) * (z + 4)
@@ -106,7 +76,7 @@ def _forearm(hand: Surface) -> None:
     hand.distance = smooth_min(hand.distance, smooth_max(tube, z - 24, 10), 14.0)
 
 
-def _finger(hand: Surface, bones: list[Bone]) -> None:
+def _finger(hand: Field, bones: list[Bone]) -> None:
     metacarpal, proximal, middle, distal = bones
     s = metacarpal.size
     r0, r1, r2, r3, r4 = (r * s for r in FINGER_RADII)
@@ -126,14 +96,14 @@ def _finger(hand: Surface, bones: list[Bone]) -> None:
     hand.pad(proximal.frame, (0, 3.6 * s, -2.5), (7.0 * s, 6.2 * s, 7.5 * s), 5.0)
 
 
-def _tip(hand: Surface, distal: Bone, base: float, tip: float, lift: float) -> None:
+def _tip(hand: Field, distal: Bone, base: float, tip: float, lift: float) -> None:
     frame, s = distal.frame, distal.size
     end = frame.world(0, lift - 0.2, distal.length - 2.8)
     hand.rod(frame.world(0, lift, 0), end, base, tip, 3.0)
     hand.pad(frame, (0, lift - 1.9 * s, 0.58 * distal.length), (6.6 * s, 5.4 * s, 8.6 * s), 3.5)
 
 
-def _thumb(hand: Surface, bones: list[Bone]) -> None:
+def _thumb(hand: Field, bones: list[Bone]) -> None:
     metacarpal, proximal, distal = bones
     r0, r1, r2, r3, r4 = THUMB_RADII
     hand.rod(metacarpal.frame.world(0, -4, 0), metacarpal.frame.world(0, -3, metacarpal.length - 4), 14.5, r0, 5.0)

@@ -1,0 +1,74 @@
+"""A volume that bodies are painted into, each only in its own window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from . import sdf
+from .grid import Axes, Grid
+from .noise import grain
+
+Point = Sequence[float]
+Body = Callable[[Axes], np.ndarray]
+
+
+class Canvas:
+    """Values on a grid, with soft edges.
+
+    Parameters
+    ----------
+    grid : Grid
+        Where the voxels lie.
+    background : float
+        Value of empty space.
+    edge : float
+        Width in voxels over which a body's edge falls off.
+    """
+
+    def __init__(self, grid: Grid, background: float, edge: float = 2.0) -> None:
+        self.grid = grid
+        self.values = grid.full(background)
+        self.edge = edge * grid.spacing
+
+    def paint(self, value: float, body: Body, low: Point, high: Point) -> None:
+        """Paint a body, given by its distance in mm, over what is there; it lies inside the box low to high."""
+        margin = self.edge
+        window, axes = self.grid.window(np.subtract(low, margin), np.add(high, margin))
+        share = sdf.inside(body(axes), self.edge)
+        self.values[window] += share * (np.float32(value) - self.values[window])
+
+    def everywhere(self, value: float, body: Body) -> None:
+        """Paint a body that may fill the whole volume."""
+        self.paint(value, body, (-1e4, -1e4, -1e4), (1e4, 1e4, 1e4))
+
+    def ball(self, value: float, center: Point, radius: float) -> None:
+        """Paint a ball."""
+        self.paint(value, lambda a: sdf.sphere(a, center, radius), np.subtract(center, radius), np.add(center, radius))
+
+    def ellipsoid(self, value: float, center: Point, radii: Point) -> None:
+        """Paint an ellipsoid along the axes."""
+        self.paint(value, lambda a: sdf.ellipsoid(a, center, radii), np.subtract(center, radii), np.add(center, radii))
+
+    def box(self, value: float, center: Point, half: Point, rounding: float = 0.0) -> None:
+        """Paint a box along the axes."""
+        self.paint(value, lambda a: sdf.box(a, center, half, rounding), np.subtract(center, half), np.add(center, half))
+
+    def rod(self, value: float, start: Point, end: Point, radius: float, last: float | None = None) -> None:
+        """Paint a rod with round ends, tapering to another radius."""
+        reach = max(radius, radius if last is None else last)
+        low, high = np.minimum(start, end) - reach, np.maximum(start, end) + reach
+        self.paint(value, lambda a: sdf.capsule(a, start, end, radius, last), low, high)
+
+    def chain(self, value: float, points: np.ndarray, radius: float, last: float | None = None) -> None:
+        """Paint rods through points, shape (n, 3), tapering from the first to the last."""
+        radii = np.linspace(radius, radius if last is None else last, len(points))
+        for i in range(len(points) - 1):
+            self.rod(value, points[i], points[i + 1], float(radii[i]), float(radii[i + 1]))
+
+    def finished(self, dtype: type, noise: float = 0.0, seed: int = 0) -> np.ndarray:
+        """Return the values with white noise of a deviation, rounded to an integer type."""
+        values = self.values + grain(self.values.shape, seed) * np.float32(noise) if noise else self.values
+        limits = (-1024, 3071) if dtype is np.int16 else (0, 255)
+        return np.asarray(np.rint(np.clip(values, *limits)).astype(dtype))
