@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import moderngl
 import numpy as np
 
 from ..errors import GpuError
@@ -20,15 +21,6 @@ _INCLUDE = re.compile(r'^\s*#include\s+"([\w.]+)"\s*$')
 FULLSCREEN_VERTEX = """#version 330 core
 void main() {
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0;
-    gl_Position = vec4(corner, 0.0, 1.0);
-}
-"""
-
-#: A rectangle given in normalised device coordinates (x0, y0, x1, y1), drawn as a strip.
-RECT_VERTEX = """#version 330 core
-uniform vec4 u_rect;
-void main() {
-    vec2 corner = mix(u_rect.xy, u_rect.zw, vec2(gl_VertexID & 1, gl_VertexID >> 1));
     gl_Position = vec4(corner, 0.0, 1.0);
 }
 """
@@ -68,14 +60,16 @@ def _expand(path: Path, files: list[str], done: set[Path]) -> str:
 class Program:
     """A linked program whose uniforms are set by name; names that the compiler dropped are ignored."""
 
-    def __init__(self, device: Device, fragment: ShaderSource, vertex: str = FULLSCREEN_VERTEX) -> None:
+    def __init__(self, device: Device, fragment: ShaderSource, vertex: str | ShaderSource = FULLSCREEN_VERTEX) -> None:
         self.device = device
         text, files = fragment.text()
+        corners = vertex if isinstance(vertex, str) else vertex.text()[0]
         try:
-            self._program = device.ctx.program(vertex_shader=vertex, fragment_shader=text)
+            self._program = device.ctx.program(vertex_shader=corners, fragment_shader=text)
         except Exception as error:  # moderngl raises its own bare Error
             raise GpuError(f"shader {fragment.file} does not compile", _name_lines(str(error), files)) from None
         self._array = device.ctx.vertex_array(self._program, [])
+        self._mesh: Any = None
         self._uniforms: dict[str, Any] = {name: self._program[name] for name in self._program}
         self._units: dict[str, int] = {}
         for name, member in self._uniforms.items():
@@ -101,18 +95,30 @@ class Program:
             if name in self._units:
                 texture.use(self._units[name])
 
-    def draw(self, *, rect: tuple[float, float, float, float] | None = None) -> None:
-        """Draw the covering triangle, or a rectangle in normalised device coordinates."""
+    def draw(self) -> None:
+        """Draw the covering triangle."""
+        self._array.render(moderngl.TRIANGLES, vertices=3)
+
+    def draw_squares(self, count: int) -> None:
+        """Draw instances of a four-cornered strip, placed by the vertex shader."""
+        self._array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=count)
+
+    def load_mesh(self, buffer: Any, attribute: str) -> None:
+        """Take triangles from a buffer of float32 (x, y, z), which the vertex shader gets as an attribute."""
+        if self._mesh is not None:
+            self._mesh.release()
+        self._mesh = self.device.ctx.vertex_array(self._program, [(buffer, "3f", attribute)])
+
+    def draw_mesh(self, first: int, count: int) -> None:
+        """Draw a range of the vertices of `load_mesh` as triangles."""
         import moderngl
 
-        if rect is None:
-            self._array.render(moderngl.TRIANGLES, vertices=3)
-        else:
-            self.set(u_rect=rect)
-            self._array.render(moderngl.TRIANGLE_STRIP, vertices=4)
+        self._mesh.render(moderngl.TRIANGLES, vertices=count, first=first)
 
     def release(self) -> None:
         """Free the GPU objects."""
+        if self._mesh is not None:
+            self._mesh.release()
         self._array.release()
         self._program.release()
 
