@@ -13,6 +13,7 @@ import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import repeat
 from types import ModuleType
 
 import numpy as np
@@ -81,7 +82,9 @@ def cones(scene: Scene, count: int) -> tuple[Cone, ...]:
     return tuple(made)
 
 
-def prepare(scene: Scene, size: tuple[int, int], directions: int, light_step: float, frame_index: int) -> Task:
+def prepare(
+    scene: Scene, size: tuple[int, int], directions: int, light_step: float, frame_index: int
+) -> Task:
     """Collect what the integral over a picture needs.
 
     Raises
@@ -95,14 +98,26 @@ def prepare(scene: Scene, size: tuple[int, int], directions: int, light_step: fl
     rays = view_rays(scene.camera, size, pixel_jitter(frame_index))
     z_in, z_out = visible_interval(scene, rays, region)
     return Task(
-        medium, region, rays, z_in, z_out, Stack.of(scene, jitter(frame_index)), cones(scene, directions),
-        float(getattr(scene.technique, "ambient", 0.0)), light_step * scene.volume.min_spacing,
+        medium,
+        region,
+        rays,
+        z_in,
+        z_out,
+        Stack.of(scene, jitter(frame_index)),
+        cones(scene, directions),
+        float(getattr(scene.technique, "ambient", 0.0)),
+        light_step * scene.volume.min_spacing,
     )
 
 
 def passes(
-    scene: Scene, size: tuple[int, int], out: np.ndarray, directions: int = 64, light_step: float = 0.5,
-    frame_index: int = 0, compiled: bool | None = None,
+    scene: Scene,
+    size: tuple[int, int],
+    out: np.ndarray,
+    directions: int = 64,
+    light_step: float = 0.5,
+    frame_index: int = 0,
+    compiled: bool | None = None,
 ) -> Iterator[float]:
     """Draw into an array some rows at a time, yielding progress (0 to 1) after each; close it to cancel.
 
@@ -122,6 +137,7 @@ def passes(
     loops = _compiled() if compiled is None else (_compiled(required=True) if compiled else None)
     if loops:
         loops.empty_distance(task.medium)  # once, before the threads ask for it
+    run = loops.integrate if loops else _integrate
     flat = out.reshape(-1, 4)
     count = max(1, BATCH // size[0]) * size[0]
     workers = os.cpu_count() or 1
@@ -130,15 +146,18 @@ def passes(
             # Threads of our own: Numba's would abort the program if two renderers ran at a time.
             pixels = np.arange(first, min(first + count, len(flat)))
             parts = [part for part in np.array_split(pixels, 4 * workers) if len(part)]
-            run = loops.integrate if loops else _integrate
-            for part, values in zip(parts, pool.map(lambda p: run(task, p), parts), strict=True):
+            for part, values in zip(parts, pool.map(run, repeat(task), parts), strict=False):
                 flat[part] = values
             yield (pixels[-1] + 1) / len(flat)
 
 
 def render(
-    scene: Scene, size: tuple[int, int], directions: int = 64, light_step: float = 0.5,
-    frame_index: int = 0, compiled: bool | None = None,
+    scene: Scene,
+    size: tuple[int, int],
+    directions: int = 64,
+    light_step: float = 0.5,
+    frame_index: int = 0,
+    compiled: bool | None = None,
 ) -> np.ndarray:
     """Return the picture of the cone integral.
 

@@ -28,10 +28,25 @@ def integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
     rear = np.array([c.rear for c in task.cones], dtype=np.bool_)
     return np.asarray(
         _pixels(
-            task.rays.start[pixels], task.rays.slope[pixels], task.z_in[pixels], task.z_out[pixels],
-            task.stack.z0, task.stack.d, task.stack.n, directions, secants, radiance, rear, task.ambient,
-            task.light_step, medium.voxels, np.ascontiguousarray(medium.index_from_world[:3]),
-            medium.density, medium.integral, empty_distance(medium), task.region.half_spaces,
+            task.rays.start[pixels],
+            task.rays.slope[pixels],
+            task.z_in[pixels],
+            task.z_out[pixels],
+            task.stack.z0,
+            task.stack.d,
+            task.stack.n,
+            directions,
+            secants,
+            radiance,
+            rear,
+            task.ambient,
+            task.light_step,
+            medium.voxels,
+            np.ascontiguousarray(medium.index_from_world[:3]),
+            medium.density,
+            medium.integral,
+            empty_distance(medium),
+            task.region.half_spaces,
         )
     )
 
@@ -50,7 +65,8 @@ def empty_distance(medium: Medium) -> np.ndarray:
     empty = count[last + 1] == count[first]
     if empty.all():
         return np.full(empty.shape, 255, dtype=np.uint8)
-    return np.minimum(ndimage.distance_transform_cdt(empty, metric="chessboard"), 255).astype(np.uint8)
+    distance = np.asarray(ndimage.distance_transform_cdt(empty, metric="chessboard"))
+    return np.asarray(np.minimum(distance, 255), dtype=np.uint8)
 
 
 @_jit
@@ -63,7 +79,8 @@ def _index(matrix, dims, axis, x, y, z):  # type: ignore[no-untyped-def]
 @_jit
 def _value(voxels, matrix, x, y, z):  # type: ignore[no-untyped-def]
     dims = voxels.shape
-    fx, fy, fz = _index(matrix, dims, 0, x, y, z), _index(matrix, dims, 1, x, y, z), _index(matrix, dims, 2, x, y, z)
+    fx, fy = _index(matrix, dims, 0, x, y, z), _index(matrix, dims, 1, x, y, z)
+    fz = _index(matrix, dims, 2, x, y, z)
     i, j, k = int(fx), int(fy), int(fz)
     fx, fy, fz = fx - i, fy - j, fz - k
     i1, j1, k1 = min(i + 1, dims[2] - 1), min(j + 1, dims[1] - 1), min(k + 1, dims[0] - 1)
@@ -143,8 +160,25 @@ def _slab_term(x, v, s, rear):  # type: ignore[no-untyped-def]
 
 @_jit
 def _pixels(  # type: ignore[no-untyped-def]
-    start, slope, z_in, z_out, z0, d, n, directions, secants, radiance, rear, ambient,
-    step, voxels, matrix, density, integral, empty, half_spaces,
+    start,
+    slope,
+    z_in,
+    z_out,
+    z0,
+    d,
+    n,
+    directions,
+    secants,
+    radiance,
+    rear,
+    ambient,
+    step,
+    voxels,
+    matrix,
+    density,
+    integral,
+    empty,
+    half_spaces,
 ):
     result = np.zeros((start.shape[0], 4))
     mean, light, pa, pb = np.zeros(7), np.zeros(3), np.zeros(3), np.zeros(3)
@@ -173,8 +207,19 @@ def _pixels(  # type: ignore[no-untyped-def]
                 for k in range(directions.shape[1]):
                     w = directions[lamp, k]
                     depth = _optical_depth(
-                        voxels, matrix, density, integral, empty, half_spaces, step,
-                        at[0], at[1], at[2], w[0], w[1], w[2],
+                        voxels,
+                        matrix,
+                        density,
+                        integral,
+                        empty,
+                        half_spaces,
+                        step,
+                        at[0],
+                        at[1],
+                        at[2],
+                        w[0],
+                        w[1],
+                        w[2],
                     )
                     if depth < DARK:
                         total += math.exp(-depth) * _slab_term(x, v, secants[lamp, k], rear[lamp])

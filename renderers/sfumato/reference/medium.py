@@ -57,17 +57,18 @@ class Medium:
         index = p_world @ self.index_from_world[:3, :3].T + self.index_from_world[:3, 3]
         index = np.clip(index, 0, self.dims - 1)
         base = np.minimum(index.astype(np.int64), np.maximum(self.dims - 2, 0))
-        fraction = index - base
-        after = np.minimum(base + 1, self.dims - 1)
-        result = np.zeros(index.shape[:-1])
-        for corner in range(8):
-            bits = [(corner >> axis) & 1 for axis in range(3)]
-            x, y, z = (np.where(bit, after[..., a], base[..., a]) for a, bit in enumerate(bits))
-            weight = np.ones(index.shape[:-1])
-            for a, bit in enumerate(bits):
-                weight = weight * (fraction[..., a] if bit else 1 - fraction[..., a])
-            result += weight * self.voxels[z, y, x]
-        return result
+        fx, fy, fz = np.moveaxis(index - base, -1, 0)
+        # Steps to the next voxel in the flat array; none along an axis of one voxel.
+        dx, dy, dz = np.where(self.dims > 1, [1, self.dims[0], self.dims[0] * self.dims[1]], 0)
+        at = base @ np.array([1, self.dims[0], self.dims[0] * self.dims[1]])
+        flat = self.voxels.ravel()
+
+        def row(first: np.ndarray) -> np.ndarray:
+            return np.asarray(flat[first] * (1 - fx) + flat[first + dx] * fx)
+
+        near = row(at) * (1 - fy) + row(at + dy) * fy
+        far = row(at + dz) * (1 - fy) + row(at + dy + dz) * fy
+        return np.asarray(near * (1 - fz) + far * fz)
 
     def extinction_between(self, s0: np.ndarray, s1: np.ndarray) -> np.ndarray:
         """Return the mean extinction (per mm) of segments along which the value runs from s0 to s1."""

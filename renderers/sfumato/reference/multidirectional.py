@@ -77,8 +77,15 @@ class LightGrid:
     """
 
     def __init__(
-        self, stack: Stack, frame: Frame, medium: Medium, region: Region,
-        light: tuple[float, float, float], form: str, falloff: str, texel: float,
+        self,
+        stack: Stack,
+        frame: Frame,
+        medium: Medium,
+        region: Region,
+        light: tuple[float, float, float],
+        form: str,
+        falloff: str,
+        texel: float,
     ) -> None:
         tilt, self.aperture, self.rotation = light
         self.rear = tilt > 90
@@ -145,7 +152,8 @@ class LightGrid:
         end = self.frame.to_world(x + step[0], y + step[1], np.asarray(z1))
         t_in, t_out = self.region.interval(start, end - start)
         inside = np.maximum(np.minimum(t_out, 1) - np.maximum(t_in, 0), 0)
-        return self.medium.extinction_between(self.medium.value(start), self.medium.value(end)) * inside
+        mean = self.medium.extinction_between(self.medium.value(start), self.medium.value(end))
+        return np.asarray(mean * inside)
 
     # -- the filter -----------------------------------------------------------------------------------
     def _transfer_function(self) -> np.ndarray:
@@ -257,8 +265,13 @@ def render(scene: Scene, size: tuple[int, int], frame_index: int = 0) -> np.ndar
 
 
 def _lit(
-    scene: Scene, grids: list[LightGrid], slab: int, points: list[np.ndarray],
-    x: np.ndarray, v: np.ndarray, alpha: np.ndarray,
+    scene: Scene,
+    grids: list[LightGrid],
+    slab: int,
+    points: list[np.ndarray],
+    x: np.ndarray,
+    v: np.ndarray,
+    alpha: np.ndarray,
 ) -> np.ndarray:
     """Return S: the light that a slab sends to the eye if it is white; shape (n, 3)."""
     total = np.zeros((len(x), 3))

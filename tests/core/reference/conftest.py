@@ -22,7 +22,9 @@ def facing(volume: Volume, parallel: bool = True, fill: float = 1.0) -> Camera:
 def slab(tau: float, n: int = 8) -> tuple[Volume, TransferFunction]:
     """Return a homogeneous cube of 8 mm and its extinction per mm."""
     volume = Volume(np.full((n, n, n), 1.0, dtype=np.float32), spacing=(8 / n,) * 3)
-    return volume, TransferFunction.from_points([(1, (0.8, 0.6, 0.4), 1 - float(np.exp(-tau)))], unit_distance=1.0)
+    return volume, TransferFunction.from_points(
+        [(1, (0.8, 0.6, 0.4), 1 - float(np.exp(-tau)))], unit_distance=1.0
+    )
 
 
 def wall(n: int = 24, solid: np.ndarray | None = None, thick: int = 4) -> tuple[Volume, TransferFunction]:
@@ -46,7 +48,9 @@ def make_wall() -> Callable[..., tuple[Volume, TransferFunction]]:
 
 @pytest.fixture
 def make_scene() -> Callable[..., Scene]:
-    def make(volume: Volume, transfer: TransferFunction, *lights: Light, parallel: bool = True, **more: Any) -> Scene:
+    def make(
+        volume: Volume, transfer: TransferFunction, *lights: Light, parallel: bool = True, **more: Any
+    ) -> Scene:
         more.setdefault("camera", facing(volume, parallel))
         return Scene(volume=volume, transfer=transfer, lights=lights or (Light(),), **more)
 
@@ -62,5 +66,7 @@ def lumpy() -> tuple[Volume, TransferFunction]:
     for _ in range(6):
         a, b, c = rng.uniform(-5, 5, 3)
         data += np.exp(-((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / rng.uniform(4, 20))
-    transfer = TransferFunction.from_points([(0.2, (0.9, 0.3, 0.1), 0.0), (0.6, (1, 0.9, 0.7), 0.5), (1.2, (0.2, 0.4, 1), 0.8)])
+    transfer = TransferFunction.from_points(
+        [(0.2, (0.9, 0.3, 0.1), 0.0), (0.6, (1, 0.9, 0.7), 0.5), (1.2, (0.2, 0.4, 1), 0.8)]
+    )
     return Volume(data.astype(np.float32)), transfer
