@@ -60,7 +60,9 @@ def _expand(path: Path, files: list[str], done: set[Path]) -> str:
 class Program:
     """A linked program whose uniforms are set by name; names that the compiler dropped are ignored."""
 
-    def __init__(self, device: Device, fragment: ShaderSource, vertex: str | ShaderSource = FULLSCREEN_VERTEX) -> None:
+    def __init__(
+        self, device: Device, fragment: ShaderSource, vertex: str | ShaderSource = FULLSCREEN_VERTEX
+    ) -> None:
         self.device = device
         text, files = fragment.text()
         corners = vertex if isinstance(vertex, str) else vertex.text()[0]
@@ -99,21 +101,9 @@ class Program:
         """Draw the covering triangle."""
         self._array.render(moderngl.TRIANGLES, vertices=3)
 
-    def draw_squares(self, count: int) -> None:
-        """Draw instances of a four-cornered strip, placed by the vertex shader."""
-        self._array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=count)
-
-    def load_mesh(self, buffer: Any, attribute: str) -> None:
-        """Take triangles from a buffer of float32 (x, y, z), which the vertex shader gets as an attribute."""
-        if self._mesh is not None:
-            self._mesh.release()
-        self._mesh = self.device.ctx.vertex_array(self._program, [(buffer, "3f", attribute)])
-
-    def draw_mesh(self, first: int, count: int) -> None:
-        """Draw a range of the vertices of `load_mesh` as triangles."""
-        import moderngl
-
-        self._mesh.render(moderngl.TRIANGLES, vertices=count, first=first)
+    def draw_rects(self, count: int) -> None:
+        """Draw rectangles, six vertices each, placed by the vertex shader (software renderers are slow at instances)."""
+        self._array.render(moderngl.TRIANGLES, vertices=6 * count)
 
     def release(self) -> None:
         """Free the GPU objects."""

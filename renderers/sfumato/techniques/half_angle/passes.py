@@ -35,6 +35,9 @@ from .slices import VERTICES, LightGrid, Slices, half_vector
 FOLDER = "techniques/half_angle/"
 #: Slices drawn between two looks at whether a newer scene is there.
 SLICES_PER_PIECE = 16
+#: Blending of premultiplied colours: over what lies behind, and under what lies before.
+OVER = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+UNDER = moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE
 
 
 @dataclass
@@ -76,7 +79,8 @@ class HalfAnglePainter:
             return
         triangles = self.device.ctx.buffer(plan.slices.triangles(corners).tobytes())
         try:
-            eye, light = self._prepare_eye(frame, plan, triangles), self._prepare_light(frame, plan, triangles)
+            eye = self._prepare_eye(frame, plan, triangles)
+            light = self._prepare_light(frame, plan, triangles)
             count = plan.slices.count
             for first in range(0, count, SLICES_PER_PIECE):
                 last = min(first + SLICES_PER_PIECE, count)
@@ -92,17 +96,19 @@ class HalfAnglePainter:
         """Set up the program that draws slices into the picture."""
         lights = frame.scene.active_lights[:1]
         color = np.asarray(lights[0].color) * lights[0].intensity if lights else np.zeros(3)
-        program = self._program("eye.frag.glsl", plan.material, REVERSE=plan.reverse, EMISSION=plan.material.tables.emits)
+        emits = plan.material.tables.emits
+        program = self._program("eye.frag.glsl", plan.material, REVERSE=plan.reverse, EMISSION=emits)
         bind_material(program, plan.material, frame)
         set_view(program, frame, None)
         program.load_mesh(triangles, "in_world")
-        light_half = frame.volume.texture_from_world[:3, :3] @ (plan.grid.towards * (plan.secant * plan.slices.spacing / 2))
+        half_way = plan.grid.towards * (plan.secant * plan.slices.spacing / 2)
         program.set(
-            u_light_half=tuple(light_half.tolist()),
+            u_light_half=tuple((frame.volume.texture_from_world[:3, :3] @ half_way).tolist()),
             u_picture_from_world=_column_by_column(picture_from_world(frame)),
             u_light_from_world=_column_by_column(plan.grid.coordinates_from_world),
-            u_axis=tuple(plan.slices.axis.tolist()), u_spacing=plan.slices.spacing, u_light_secant=plan.secant,
-            u_light_color=tuple(color.tolist()), u_facing=1 / facing_surface(frame),
+            u_axis=tuple(plan.slices.axis.tolist()), u_spacing=plan.slices.spacing,
+            u_light_secant=plan.secant, u_light_color=tuple(color.tolist()),
+            u_facing=1 / facing_surface(frame),
         )  # fmt: skip
         return program
 
@@ -124,11 +130,12 @@ class HalfAnglePainter:
             program.set(u_picture_from_world=_column_by_column(_drawn_over(plan.grid.coordinates_from_world)))
             return program
         aperture = frame.scene.active_lights[0].aperture
-        # The nominal step in place of one of the two: a drag with fewer slices blurs as much as the full picture.
+        # The nominal step in place of one of the two: a drag with fewer slices blurs as much as the picture.
         area = frame.step * frame.nominal_step * (plan.secant / plan.grid.texel) ** 2
         variance = kernel_moments(0.0, aperture).across * area
         stencil = stencil_for(variance, 0.0, variance)
-        program.set(u_taps=np.array(stencil.taps, dtype=np.int32), u_weights=(stencil.center, *stencil.weights))
+        taps = np.array(stencil.taps, dtype=np.int32)
+        program.set(u_taps=taps, u_weights=(stencil.center, *stencil.weights))
         return program
 
     def _draw_to_eye(self, frame: Frame, program: Program, plan: Plan, number: int) -> None:
@@ -137,8 +144,7 @@ class HalfAnglePainter:
         program.bind(u_light=self._buffers[0].texture)
         program.set(u_height=float(plan.slices.heights[number]))
         ctx.enable(moderngl.BLEND)
-        # Premultiplied: over what lies behind, or under what lies before.
-        ctx.blend_func = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA) if plan.reverse else (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
+        ctx.blend_func = OVER if plan.reverse else UNDER
         program.draw_mesh(number * VERTICES, VERTICES)
         ctx.disable(moderngl.BLEND)
 
@@ -202,13 +208,13 @@ def plan_slices(frame: Frame, material: Material, corners: np.ndarray) -> Plan:
 
 
 def facing_surface(frame: Frame) -> float:
-    """Return what a solid surface that faces the viewer sends back of parallel light of intensity 1: 1 / (1 + s)."""
+    """Return what a solid surface that faces the viewer sends back of parallel light: 1 / (1 + s)."""
     tilt = frame.scene.light_angles()[0][0] if frame.scene.active_lights else 0.0
     return 1 / (1 + 1 / max(abs(math.cos(math.radians(tilt))), 1e-3))
 
 
 def picture_from_world(frame: Frame) -> np.ndarray:
-    """Return the 4 x 4 from world mm to clip space, with the frame's jitter, as the rays of ``ray.glsl`` have it."""
+    """Return the 4 x 4 from world mm to clip space that belongs to the jittered rays of ``ray.glsl``."""
     basis, (width, height) = frame.camera.basis(), frame.size
     to_view = np.eye(4)
     to_view[:3, :3] = [basis.right, basis.up, basis.forward]

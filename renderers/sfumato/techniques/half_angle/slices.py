@@ -15,7 +15,7 @@ from ..stack import PAD
 
 #: Edges of a box whose corners are numbered as in `Volume.corners`: bit 2 is x, bit 1 is y, bit 0 is z.
 _EDGES = np.array([(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit])
-#: A plane cuts at most all twelve edges (through corners); drawn as a fan of ten triangles, some of them empty.
+#: A plane cuts at most twelve edges (through corners): a fan of ten triangles, most of them empty.
 _FAN = np.array([(0, k, k + 1) for k in range(1, 11)]).ravel()
 #: Vertices of one slice in the buffer.
 VERTICES = len(_FAN)
@@ -36,7 +36,7 @@ def half_vector(back: np.ndarray, towards: np.ndarray) -> tuple[np.ndarray, bool
 
 @dataclass(frozen=True)
 class Slices:
-    """Planes ``axis . p = top - k * spacing``, from the light's side on; a slice stands for the slab around it."""
+    """Planes ``axis . p = top - k * spacing``, from the light's side on; each stands for a slab."""
 
     axis: np.ndarray
     top: float
@@ -44,7 +44,9 @@ class Slices:
     count: int
 
     @staticmethod
-    def through(axis: np.ndarray, whole: np.ndarray, part: np.ndarray, spacing: float, jitter: float) -> Slices:
+    def through(
+        axis: np.ndarray, whole: np.ndarray, part: np.ndarray, spacing: float, jitter: float
+    ) -> Slices:
         """Return the slices that meet a part of a box; where they lie depends on the whole box alone.
 
         Parameters
@@ -82,10 +84,11 @@ class Slices:
         return np.ascontiguousarray(polygon[:, _FAN], dtype=np.float32)
 
     def _crossings(self, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return where planes meet the box's edges, shape (count, 12, 3), and whether they do, shape (count, 12)."""
+        """Return where planes meet the box's edges, (count, 12, 3), and whether they do, (count, 12)."""
         start, end = corners[_EDGES[:, 0]], corners[_EDGES[:, 1]]
         low, high = start @ self.axis, end @ self.axis
-        span = np.where(np.abs(high - low) < 1e-12, np.inf, high - low)  # an edge in the plane has corners on others
+        # An edge in the plane has its corners on other edges too.
+        span = np.where(np.abs(high - low) < 1e-12, np.inf, high - low)
         s = (self.heights[:, None] - low) / span
         hit = (s >= 0) & (s <= 1) & np.isfinite(span)
         return start + np.where(hit, s, 0.0)[..., None] * (end - start), hit
@@ -111,7 +114,11 @@ class LightGrid:
 
     @staticmethod
     def over(
-        corners: np.ndarray, towards: np.ndarray, upright: np.ndarray, texel: float, offset: tuple[float, float]
+        corners: np.ndarray,
+        towards: np.ndarray,
+        upright: np.ndarray,
+        texel: float,
+        offset: tuple[float, float],
     ) -> LightGrid:
         """Return the grid over a box.
 
@@ -130,7 +137,8 @@ class LightGrid:
         at = corners @ across.T
         low, high = at.min(axis=0), at.max(axis=0)
         size = np.ceil((high - low) / texel).astype(int) + 2 * PAD
-        return LightGrid(towards, across, low + texel * (np.asarray(offset) - PAD), texel, (int(size[0]), int(size[1])))
+        origin = low + texel * (np.asarray(offset) - PAD)
+        return LightGrid(towards, across, origin, texel, (int(size[0]), int(size[1])))
 
     @property
     def coordinates_from_world(self) -> np.ndarray:
@@ -139,7 +147,7 @@ class LightGrid:
         return np.concatenate([self.axes, -self.origin[:, None]], axis=1) * scale[:, None]
 
     def columns(self, axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the affine 3 x 3 from texel coordinates to the world point at height 0, and its way per mm of height."""
+        """Return the affine 3 x 3 from texels to world points at height 0, and their way per mm of height."""
         slope = self.towards / float(axis @ self.towards)
         # Slide each point across the light along the light, until it lies at height 0.
         flat = self.axes - np.outer(self.axes @ axis, slope)
