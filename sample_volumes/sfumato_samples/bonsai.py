@@ -1,6 +1,6 @@
 """A little tree in a pot: trunk, branches, and clumps of leaves that shade each other.
 
-The pot lies at 0, on the other side of the air (70) than leaves (140) and wood (230), and keeps its colour.
+Pot (0) and wood (105) lie on either side of the air (70); the leaves (255) have the thinnest coat of wood.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from .grid import Grid
 from .noise import smooth_noise
 
 GRID = Grid(low=(-68.0, -60.0, -6.0), dims=(136, 120, 136), spacing=1.0)
-AIR, POT, LEAVES, WOOD = 70.0, 0.0, 140.0, 230.0
+AIR, POT, WOOD, LEAVES = 70.0, 0.0, 105.0, 255.0
 TRUNK = np.array([(6, 0, 22), (14, -2, 34), (12, 2, 46), (-2, 4, 56), (-10, 2, 68), (-4, -2, 80), (6, -2, 92), (8, 0, 104)])
 #: Where a branch leaves the trunk (row of TRUNK), where it ends, half axes of its clump of leaves.
 BRANCHES = (
@@ -85,4 +85,4 @@ def _pot(canvas: Canvas) -> None:
     for x in (-1, 1):
         for y in (-1, 1):
             canvas.box(POT, (x * 26, y * 18, -2.5), (6, 5, 2.5), 1)
-    canvas.ellipsoid(WOOD * 0.95, (0, 0, 17), (43, 31, 6.5))
+    canvas.ellipsoid(WOOD, (0, 0, 17), (43, 31, 6.5))

@@ -62,10 +62,18 @@ class Canvas:
         self.paint(value, lambda a: sdf.capsule(a, start, end, radius, last), low, high)
 
     def chain(self, value: float, points: np.ndarray, radius: float, last: float | None = None) -> None:
-        """Paint rods through points, shape (n, 3), tapering from the first to the last."""
+        """Paint one body of rods through points, shape (n, 3), tapering from the first to the last."""
         radii = np.linspace(radius, radius if last is None else last, len(points))
+        reach = float(radii.max()) + self.edge
+        whole, _ = self.grid.window(points.min(axis=0) - reach, points.max(axis=0) + reach)
+        distance = np.full(self.values[whole].shape, reach, dtype=np.float32)
         for i in range(len(points) - 1):
-            self.rod(value, points[i], points[i + 1], float(radii[i]), float(radii[i + 1]))
+            ends = points[i : i + 2]
+            window, axes = self.grid.window(ends.min(axis=0) - reach, ends.max(axis=0) + reach)
+            part = tuple(slice(w.start - o.start, w.stop - o.start) for w, o in zip(window, whole, strict=True))
+            rod = sdf.capsule(axes, points[i], points[i + 1], float(radii[i]), float(radii[i + 1]))
+            distance[part] = np.minimum(distance[part], rod)
+        self.values[whole] += sdf.inside(distance, self.edge) * (np.float32(value) - self.values[whole])
 
     def finished(self, dtype: type, noise: float = 0.0, seed: int = 0) -> np.ndarray:
         """Return the values with white noise of a deviation, rounded to an integer type."""

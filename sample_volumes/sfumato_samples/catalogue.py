@@ -176,15 +176,15 @@ ENTRIES: dict[str, Entry] = {
         ),
         Entry(
             "skull", "Skull", "CT of a skull with eye sockets, nose, cheek bones, lower jaw and teeth",
-            (116, 156, 136), (1.4, 1.4, 1.4), **_HU,
+            (116, 156, 144), (1.4, 1.4, 1.4), **_HU,
             transfer=((200, _IVORY, 0.0), (480, _IVORY, 0.95), (1500, (1.0, 0.97, 0.9), 1.0)),
         ),
         Entry(
             "bonsai", "Bonsai", "A small tree: roots, crooked trunk, branches with clumps of leaves, in a glazed pot",
             (136, 120, 136), (1.0, 1.0, 1.0), "label", dtype="uint8", view="front",
             transfer=(
-                (30, (0.10, 0.22, 0.36), 1.0), (55, (0.10, 0.22, 0.36), 0.0), (95, _LEAF, 0.0), (125, _LEAF, 0.8), (150, _LEAF, 0.8),
-                (185, _BARK, 0.9), (255, _BARK, 1.0),
+                (30, (0.10, 0.22, 0.36), 1.0), (55, (0.10, 0.22, 0.36), 0.0), (88, _BARK, 0.0), (98, _BARK, 0.9),
+                (112, _BARK, 0.9), (124, _BARK, 0.0), (140, _LEAF, 0.0), (190, _LEAF, 0.9), (255, _LEAF, 0.9),
             ),
         ),
         Entry(

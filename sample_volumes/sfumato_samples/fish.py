@@ -58,34 +58,35 @@ def _smooth_outline(column: int) -> np.ndarray:
 
 def _spine(canvas: Canvas) -> None:
     """Paint the vertebrae with the spines above and below, and the ribs round the belly."""
-    places = np.linspace(-78, 88, 36)
+    places = np.linspace(-66, 88, 29)
     for i, x in enumerate(places):
         z, (belly, back, width) = _spine_z(x), _outline(float(x))
-        canvas.rod(BONE, (x - 1.4, 0, z), (x + 1.4, 0, z), 3.4 - 0.045 * i)
-        canvas.rod(BONE, (x, 0, z + 2), (x + 9, 0, z + (back - z) * 0.72), 1.25, 0.8)
+        canvas.rod(BONE, (x - 1.4, 0, z), (x + 1.4, 0, z), 3.6 - 0.06 * i)
+        canvas.rod(BONE, (x, 0, z + 2), (x + 9, 0, z + (back - z) * 0.72), 1.6, 1.1)
         if x > 5:
-            canvas.rod(BONE, (x, 0, z - 2), (x + 9, 0, z + (belly - z) * 0.75), 1.25, 0.8)
+            canvas.rod(BONE, (x, 0, z - 2), (x + 9, 0, z + (belly - z) * 0.75), 1.6, 1.1)
         else:
             for side in (-1, 1):
                 arc = [
                     (x + 10 * t, side * width * 0.86 * math.sin(0.25 + 2.3 * t), z - 1 - (z - belly) * 0.86 * t**1.15)
                     for t in np.linspace(0, 1, 9)
                 ]
-                canvas.chain(BONE, np.array(arc), 1.5, 0.8)
+                canvas.chain(BONE, np.array(arc), 1.8, 1.25)
 
 
 def _head(canvas: Canvas) -> None:
     """Paint the skull's roof, the ring of the eye, jaws, and the gill cover as a thin curved plate."""
-    roof = np.array([(-126, 0, 2), (-114, 0, 11), (-98, 0, 21), (-80, 0, 27), (-72, 0, 20)])
-    canvas.chain(BONE, roof, 3.2, 3.6)
+    crown = sdf.Frame.along((-99, 0, 14), (1, 0, 0.46), (0, 0, 1))
+    for size, value in ((1.0, BONE), (0.72, 250.0)):
+        radii = (11 * size, 7 * size, 31 * size)
+        canvas.paint(value, lambda a, radii=radii: sdf.ellipsoid(crown.local(a), (0, 0, 0), radii), (-132, -14, -14), (-64, 14, 42))
     for side in (-1, 1):
-        canvas.chain(BONE, roof * (1, 1, 0.86) + (0, side * 6, 0), 2.4, 3.4)
         canvas.chain(BONE, np.array([(-128, side * 2, -4), (-118, side * 9, -9), (-106, side * 13, -14)]), 2.4, 2.0)
         canvas.chain(BONE, np.array([(-129, side * 2, -8), (-116, side * 8, -17), (-100, side * 12, -22)]), 2.2, 2.0)
         ring = [(-109 + 7 * math.cos(t), side * 13.0, 4 + 7 * math.sin(t)) for t in np.linspace(0, 2 * math.pi, 15)]
         canvas.chain(BONE, np.array(ring), 1.6)
-        _plate(canvas, (-84, side * 16, -6), (15, 6, 21), side)
-        _plate(canvas, (-98, side * 14, -15), (11, 5, 10), side)
+        _plate(canvas, (-83, side * 13, -5), (17, 9, 24), side)
+        _plate(canvas, (-98, side * 12, -13), (14, 6, 11), side)
         for i in range(4):
             arch = [(-92 + 3.5 * i + 6 * math.cos(t), side * (5 + 2 * math.sin(t)), -6 + 15 * math.sin(t)) for t in np.linspace(-1.4, 1.4, 7)]
             canvas.chain(RAY, np.array(arch), 1.2)
@@ -105,17 +106,17 @@ def _plate(canvas: Canvas, center: tuple[float, float, float], radii: tuple[floa
 
 def _fins(canvas: Canvas) -> None:
     """Paint the rays of all fins: dorsal, tail, anal, and the pairs at breast and belly."""
-    for i, x in enumerate(np.linspace(-38, 34, 22)):
+    for i, x in enumerate(np.linspace(-38, 34, 18)):
         back = _outline(float(x))[1]
         high = 19 - 0.45 * i + (3 if i == 1 else 0)
-        canvas.rod(RAY, (x, 0, back - 9), (x + 8 + 0.3 * i, 0, min(back + high, 68)), 1.5 if i < 2 else 1.0, 0.6)
-    for t in np.linspace(-1, 1, 27):
+        canvas.rod(RAY, (x, 0, back - 9), (x + 8 + 0.3 * i, 0, min(back + high, 68)), 1.9 if i < 2 else 1.35, 1.0)
+    for t in np.linspace(-1, 1, 23):
         reach = 26 + 18 * abs(t) ** 1.4
-        canvas.rod(RAY, (88, 0, 3 + 7 * t), (92 + reach * 0.98, 0, 2 + 40 * t), 1.1, 0.65)
+        canvas.rod(RAY, (88, 0, 3 + 7 * t), (92 + reach * 0.98, 0, 2 + 40 * t), 1.4, 1.0)
     for i, x in enumerate(np.linspace(34, 56, 9)):
         belly = _outline(float(x))[0]
-        canvas.rod(RAY, (x, 0, belly + 8), (x + 14, 0, belly - 17 + 1.3 * i), 1.3 if i < 2 else 1.0, 0.6)
+        canvas.rod(RAY, (x, 0, belly + 8), (x + 14, 0, belly - 17 + 1.3 * i), 1.7 if i < 2 else 1.35, 1.0)
     for side in (-1, 1):
-        for i in range(10):
-            canvas.rod(RAY, (-70, side * 15, -24 - 0.5 * i), (-44 - 2.2 * i, side * (20 + 0.8 * i), -32 - 2.6 * i), 1.1, 0.6)
-            canvas.rod(RAY, (-6 - 0.3 * i, side * 9, -36), (18 - 2.6 * i, side * (12 + 0.5 * i), -50 - 1.0 * i), 1.1, 0.6)
+        for i in range(8):
+            canvas.rod(RAY, (-70, side * 15, -24 - 0.5 * i), (-44 - 2.2 * i, side * (20 + 0.8 * i), -32 - 3.4 * i), 1.4, 1.0)
+            canvas.rod(RAY, (-6 - 0.3 * i, side * 9, -36), (18 - 2.6 * i, side * (12 + 0.5 * i), -50 - 1.6 * i), 1.4, 1.0)

@@ -1,12 +1,10 @@
 """Two streams that mix in a pipe with baffles: temperature as the scalar, and the flow as vectors.
 
-The flow is the curl of a potential that vanishes at the wall, so that it is free of sources: an axial stream
-that winds around the baffles, and a swirl that sets in behind each.
+The flow is the curl of a potential, so that it is free of sources: a laminar stream along the pipe (x), bent
+around the baffles, with a swirl that sets in downstream. It follows no equation of motion.
 """
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 
@@ -74,15 +72,19 @@ def _temperature() -> np.ndarray:
 
 
 def vectors() -> np.ndarray:
-    """Return velocities in mm/s, float32 (z, y, x, 3) with components x, y, z."""
+    """Return velocities in mm/s, float32 (z, y, x, 3) with components x, y, z; 0 outside the pipe."""
     x, y, z = GRID.axes()
-    inner = np.clip(1 - (y * y + z * z) * np.float32(1 / (RADIUS * RADIUS)), 0, 1)
-    # Along y: its curl is the axial stream, faster in the middle; along x: the swirl.
-    height = z - _center(x)
-    stream = np.float32(-SPEED) * height * inner / (1 + height * height * np.float32(1 / 150))
-    swirl = np.float32(SWIRL * SPEED / RADIUS) * np.clip((x + 50) * np.float32(1 / 30), 0, 1)
-    swirl = swirl * inner * inner * np.float32(RADIUS * RADIUS / 4) * np.float32(1 / math.pi)
-    d = GRID.spacing
-    stream_z, stream_x = np.gradient(stream, d, axis=0), np.gradient(stream, d, axis=2)
-    swirl_z, swirl_y = np.gradient(swirl, d, axis=0), np.gradient(swirl, d, axis=1)
-    return np.stack([-stream_z, swirl_z, stream_x - swirl_y], axis=-1).astype(np.float32)
+    square = (y * y + z * z) * np.float32(1 / (RADIUS * RADIUS))
+    inner = np.clip(1 - square, 0, 1)
+    # The potential of a laminar stream along x, and what bends it around the baffles ...
+    around = np.float32(SPEED) * (np.float32(0.5) - np.float32(0.25) * square)
+    along_y = np.float32(1.3 * SPEED) * _center(x) * inner * inner - around * z
+    along_z = around * y + 0 * x
+    # ... and of the swirl, a stream function in each section.
+    growing = np.clip((x + 50) * np.float32(1 / 30), 0, 1)
+    along_x = np.float32(SWIRL * SPEED * RADIUS / 8) * growing * inner * inner
+    dx = {axis: np.gradient(field, GRID.spacing, axis=2) for axis, field in (("y", along_y), ("z", along_z))}
+    dy = {axis: np.gradient(field, GRID.spacing, axis=1) for axis, field in (("x", along_x), ("z", along_z))}
+    dz = {axis: np.gradient(field, GRID.spacing, axis=0) for axis, field in (("x", along_x), ("y", along_y))}
+    flow = np.stack([dy["z"] - dz["y"], dz["x"] - dx["z"], dx["y"] - dy["x"]], axis=-1)
+    return (flow * (square < 1)[..., None]).astype(np.float32)

@@ -11,13 +11,13 @@ from .canvas import Canvas
 from .field import WORLD, Field
 from .grid import Grid
 
-GRID = Grid(low=(-81.2, -112.0, -98.0), dims=(116, 156, 136), spacing=1.4)
+GRID = Grid(low=(-81.2, -112.0, -98.0), dims=(116, 156, 144), spacing=1.4)
 CORTEX, SPONGY, ENAMEL = 1100.0, 380.0, 2100.0
 
 
 def generate() -> np.ndarray:
     """Return the skull in Hounsfield units, int16."""
-    bone = Field(GRID, far=16)
+    bone = Field(GRID, far=34)
     _cranium(bone)
     _face(bone)
     _openings(bone)
@@ -37,7 +37,7 @@ def _cranium(bone: Field) -> None:
     bone.pad(WORLD, (0, 46, 6), (54, 48, 42), 20)
     for side in (-1, 1):
         bone.pad(WORLD, (side * 55, 20, -22), (11, 14, 20), 12)  # mastoids
-        bone.rod((side * 8, -82, 12), (side * 44, -66, 17), 6.5, 5.5, 9)  # brows
+        bone.rod((side * 10, -80, 18), (side * 46, -66, 15), 6.0, 5.5, 9)  # brows
 
 
 def _face(bone: Field) -> None:
@@ -57,15 +57,15 @@ def _face(bone: Field) -> None:
 def _openings(bone: Field) -> None:
     """Cut brain case, eye sockets, nose, temples and the way out to the spine."""
     bone.cut(WORLD, (0, 14, 36), (62.5, 77.5, 55.5), 1)
-    bone.cut(WORLD, (0, -36, 39), (47, 40, 39), 1)
+    bone.cut(WORLD, (0, -34, 48), (46, 36, 31), 1)
     bone.cut(WORLD, (0, 46, 9), (47.5, 41.5, 35), 1)
     bone.cut(WORLD, (0, 34, -40), (15, 18, 24), 3)
     for side in (-1, 1):
-        socket = sdf.Frame.along((side * 29.5, -68, -2), (side * 0.36, -1, -0.08), (0, 0, 1))
-        bone.cut(socket, (0, 0, 0), (19.0, 17.0, 33), 3)
+        socket = sdf.Frame.along((side * 29.5, -72, -2), (side * 0.36, -1, -0.08), (0, 0, 1))
+        bone.cut(socket, (0, 0, 0), (18.5, 16.5, 29), 3)
         bone.cut(WORLD, (side * 10.5, -86, -29), (7.5, 22, 13), 3)
         bone.cut(WORLD, (side * 7.5, -90, -18), (6.0, 18, 12), 3)
-        bone.cut(WORLD, (side * 62, -34, -6), (13, 24, 22), 4)
+        bone.cut(WORLD, (side * 62, -32, -6), (11, 20, 20), 4)
         bone.cut(WORLD, (side * 26, -34, -40), (16, 16, 22), 4)
         bone.cut(WORLD, (side * 20, -58, -33), (10, 14, 12), 2)
 
@@ -89,7 +89,7 @@ def _jaw(jaw: Field) -> None:
         jaw.rod((side * 48, -6, -64), (side * 53, 3, -22), 7.5, 4.5, 8)
         jaw.rod((side * 48, -14, -58), (side * 52, -20, -22), 6, 3, 8)
         jaw.rod((side * 48, -8, -52), (side * 51, -10, -38), 7, 6, 8)
-        jaw.rod((side * 48, 4, -18), (side * 57, 4, -18), 4.6, 4.6, 4)
+        jaw.rod((side * 49, 4, -19), (side * 55, 4, -19), 4.4, 4.4, 4)
 
 
 def _teeth(canvas: Canvas) -> None:

@@ -13,7 +13,7 @@ from .grid import Axes, Grid
 GRID = Grid(low=(-168.0, -112.0, -6.0), dims=(168, 112, 176), spacing=2.0)
 #: Height (mm), half width and half depth of the rib cage.
 CAGE = np.array([(0, 128, 84), (60, 130, 86), (140, 124, 84), (220, 102, 74), (270, 76, 60), (320, 46, 44)], dtype=float)
-CORTEX, SPONGY, CARTILAGE, CONTRAST = 900.0, 280.0, 140.0, 215.0
+CORTEX, SPONGY, CARTILAGE, CONTRAST = 900.0, 280.0, 330.0, 215.0
 SPINE_Y = 56.0
 
 
@@ -29,9 +29,30 @@ def generate() -> np.ndarray:
         _shoulder(canvas, side)
     _spine(canvas)
     front = -_cage(200)[1]
-    canvas.box(CORTEX * 0.7, (0, front - 6, 262), (22, 5, 22), 5)
-    canvas.box(CORTEX * 0.7, (0, front - 10, 196), (13, 5, 48), 5)
+    for value, thinner in ((CORTEX * 0.7, 0.0), (SPONGY, 2.5)):
+        for (x0, z0, r0), (x1, z1, r1) in _STERNUM:
+            start, end = (x0, front + 2 - 0.06 * (280 - z0), z0), (x1, front + 2 - 0.06 * (280 - z1), z1)
+            flat = sdf.Frame.along(start, np.subtract(end, start))
+            _plate(canvas, value, flat, float(np.linalg.norm(np.subtract(end, start))), (r0 - thinner, r1 - thinner), 5 - thinner)
     return canvas.finished(np.int16, noise=8, seed=21)
+
+
+#: Breastbone: handle, body, tip; at either end x, z and half width.
+_STERNUM = (((0, 284, 25), (0, 252, 13)), ((0, 246, 13), (0, 170, 17)), ((0, 166, 12), (0, 144, 6)))
+
+
+def _plate(canvas: Canvas, value: float, frame: sdf.Frame, span: float, widths: tuple[float, float], thick: float) -> None:
+    """Paint a flat bone along a frame's w axis, its half width going from one value to another."""
+    reach = max(widths) + thick
+    ends = np.array([frame.origin, frame.world(0, 0, span)])
+
+    def distance(a: Axes) -> np.ndarray:
+        u, v, w = frame.local(a)
+        width = np.float32(widths[0]) + np.clip(w / np.float32(span), 0, 1) * np.float32(widths[1] - widths[0])
+        flat = (sdf.length(u / width, v * np.float32(1 / thick)) - 1) * np.float32(thick)
+        return sdf.smooth_max(flat, np.abs(w - np.float32(span / 2)) - np.float32(span / 2), 4)
+
+    canvas.paint(value, distance, ends.min(axis=0) - reach, ends.max(axis=0) + reach)
 
 
 def _cage(z: float) -> tuple[float, float]:

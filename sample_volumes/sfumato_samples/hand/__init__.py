@@ -119,7 +119,7 @@ def _bone(grid: Grid, body: np.ndarray, soft: np.ndarray, bones: Skeleton) -> np
     trabecular = np.float32(300) + np.float32(110) * sponge
     core = trabecular + (np.float32(70) - trabecular) * shaft
     cortex = np.float32(1050) + np.float32(450) * shaft
-    thickness = np.float32(1.5) + np.float32(1.0) * shaft
+    thickness = np.float32(1.4) + np.float32(0.5) * shaft
     value = core + (cortex - core) * inside(-near - thickness, 1.2)
     soft[at] += (value - soft[at]) * inside(near, 2.2 * grid.spacing)
     return soft
