@@ -7,12 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QCoreApplication, QEvent
-from qtpy.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+from qtpy.QtCore import QCoreApplication, QEvent, QPoint, QPointF, Qt
+from qtpy.QtGui import QMouseEvent, QWheelEvent
+from qtpy.QtWidgets import QApplication, QWidget
 
 from sfumato import Document, Scene, TransferFunction, Volume, VolumeInfo
+from sfumato_ui.sliders import Slider
 from sfumato_ui.theme import apply_theme
 from sfumato_ui.window import MainWindow
+
+LEFT = Qt.MouseButton.LeftButton
 
 
 def ball(n: int = 40) -> Volume:
@@ -68,33 +73,92 @@ def make_window(qapp: QApplication) -> Iterator[MakeWindow]:
         window.deleteLater()
 
 
+class Hand:
+    """What a user does and sees: real mouse and key events on a window, and its picture as numbers."""
+
+    def __init__(self, window: MainWindow, qtbot: QtBot) -> None:
+        self.window, self.qtbot = window, qtbot
+
+    def wait_for_picture(self, timeout: int = 90_000) -> None:
+        """Wait until a full picture of the scene that the window now wants is shown."""
+
+        def there() -> bool:
+            picture = self.window.viewport.picture
+            return (
+                picture is not None
+                and not picture.interactive
+                and picture.scene == self.window.driver.shown_scene
+                and picture.size == self.window.viewport.pixel_size
+            )
+
+        self.qtbot.waitUntil(there, timeout=timeout)
+
+    def pixels(self) -> np.ndarray:
+        """Return the picture that is shown, shape (height, width, 4)."""
+        picture = self.window.viewport.picture
+        assert picture is not None
+        image = picture.image
+        flat = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
+        return flat[:, : 4 * image.width()].reshape(image.height(), image.width(), 4).astype(int)
+
+    def drag(self, widget: QWidget, start: QPoint, end: QPoint, *, steps: int = 8, button: Qt.MouseButton = LEFT,
+             keys: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier) -> None:  # fmt: skip
+        """Press at one place, move in steps, release at another."""
+        self.qtbot.mousePress(widget, button, keys, start)
+        for i in range(1, steps + 1):
+            at = start + (end - start) * (i / steps)
+            # QTest's mouseMove knows no modifiers: the event itself does.
+            event = QMouseEvent(
+                QEvent.Type.MouseMove, QPointF(at), QPointF(widget.mapToGlobal(at)), Qt.MouseButton.NoButton, button, keys
+            )  # fmt: skip
+            QApplication.sendEvent(widget, event)
+            self.qtbot.wait(5)
+        self.qtbot.mouseRelease(widget, button, keys, end)
+
+    def drag_slider(self, slider: Slider, start: float, end: float, steps: int = 8) -> None:
+        """Drag a slider from one fraction of its length to another."""
+        left, length, y = 10, slider.width() - 20, slider.height() // 2
+        places = [QPoint(round(left + length * f), y) for f in (start, end)]
+        self.drag(slider, *places, steps=steps)
+
+    def wheel(self, widget: QWidget, notches: int = 1, at: QPoint | None = None) -> None:
+        """Turn the wheel over a widget, in its middle if no place is given."""
+        place = at if at is not None else widget.rect().center()
+        event = QWheelEvent(
+            QPointF(place), QPointF(widget.mapToGlobal(place)), QPoint(), QPoint(0, 120 * notches),
+            Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier, Qt.ScrollPhase.NoScrollPhase, False,
+        )  # fmt: skip
+        QApplication.sendEvent(widget, event)
+
+    def press(self, key: Qt.Key, *keys: Qt.KeyboardModifier) -> None:
+        """Press and release a key on what has the focus."""
+        modifiers = Qt.KeyboardModifier.NoModifier
+        for one in keys:
+            modifiers |= one
+        self.qtbot.keyClick(QApplication.focusWidget() or self.window, key, modifiers)
+
+
 @pytest.fixture
-def window(make_window: MakeWindow, qtbot: object) -> MainWindow:
+def window(make_window: MakeWindow, qtbot: QtBot) -> MainWindow:
     """A window on the ball, with its first picture."""
     made = make_window(Scene(volume=ball(), transfer=solid()))
-    wait_for_picture(made, qtbot)
+    Hand(made, qtbot).wait_for_picture()
     return made
 
 
-def wait_for_picture(window: MainWindow, qtbot: object, timeout: int = 60_000) -> None:
-    """Wait until a full picture of the scene that the window now wants is shown."""
-
-    def there() -> bool:
-        picture = window.viewport.picture
-        return (
-            picture is not None
-            and not picture.interactive
-            and picture.scene == window.driver.shown_scene
-            and picture.size == window.viewport.pixel_size
-        )
-
-    qtbot.waitUntil(there, timeout=timeout)  # type: ignore[attr-defined]
+@pytest.fixture
+def hand(window: MainWindow, qtbot: QtBot) -> Hand:
+    """The user of that window."""
+    return Hand(window, qtbot)
 
 
-def pixels(window: MainWindow) -> np.ndarray:
-    """Return the picture that is shown as numbers, shape (height, width, 4)."""
-    picture = window.viewport.picture
-    assert picture is not None
-    image = picture.image
-    flat = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
-    return flat[:, : 4 * image.width()].reshape(image.height(), image.width(), 4).astype(int)
+@pytest.fixture
+def hand_of(qtbot: QtBot) -> Callable[[MainWindow], Hand]:
+    """Return a maker of users, for windows of a test's own."""
+    return lambda window: Hand(window, qtbot)
+
+
+@pytest.fixture
+def ball_scene() -> Scene:
+    """The scene of `window`."""
+    return Scene(volume=ball(), transfer=solid())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from qtpy.QtCore import QSize, Qt, Signal
-from qtpy.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from .editing import Editor
 from .icons import icon
@@ -91,7 +91,6 @@ class ToolStrip(QFrame):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("Strip")
-        self.group = QButtonGroup(self)
         self.tools = {
             "orbit": tool_button("Orbit", "Orbit: drag turns the subject (Esc)", checkable=True),
             "light": tool_button("Light", "Light: drag moves the selected lamp (L)", checkable=True),
@@ -102,7 +101,6 @@ class ToolStrip(QFrame):
         column.setSpacing(4)
         for name, button in self.tools.items():
             button.setIconSize(QSize(22, 22))
-            self.group.addButton(button)
             button.clicked.connect(lambda _=False, name=name: self.choose(name))
             column.addWidget(button)
         column.addStretch(1)
@@ -113,7 +111,9 @@ class ToolStrip(QFrame):
 
     def choose(self, name: str) -> None:
         """Make a tool the active one."""
-        self.tools[name].setChecked(True)
+        # No exclusive button group: its unchecked buttons could not be reached by Tab.
+        for other, button in self.tools.items():
+            button.setChecked(other == name)
         self.chosen.emit(name)
 
     def buttons(self) -> list[QWidget]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
+from qtpy.QtWidgets import QHBoxLayout, QToolButton, QWidget
 
 from sfumato import Light
 from sfumato.scene import MAX_LIGHTS
@@ -30,8 +30,7 @@ class LampRow(QWidget):
         self._row = QHBoxLayout(self)
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.setSpacing(4)
-        self._group = QButtonGroup(self)
-        self._chips: list[QToolButton] = []
+        self.chips: list[QToolButton] = []
         self.mute = self._button("Mute the lamp", checkable=True)
         self.remove = self._button("Remove the lamp")
         self.add = self._button("Add a lamp")
@@ -56,14 +55,13 @@ class LampRow(QWidget):
     def refresh(self) -> None:
         """Show the scene's lamps."""
         lights = self._editor.scene.lights
-        while len(self._chips) < len(lights):
+        while len(self.chips) < len(lights):
             self._append_chip()
-        while len(self._chips) > len(lights):
-            chip = self._chips.pop()
-            self._group.removeButton(chip)
+        while len(self.chips) > len(lights):
+            chip = self.chips.pop()
             chip.hide()
             chip.deleteLater()
-        for i, (chip, light) in enumerate(zip(self._chips, lights, strict=True)):
+        for i, (chip, light) in enumerate(zip(self.chips, lights, strict=True)):
             chip.setText(light.name or str(i + 1))
             chip.setAccessibleName(f"Lamp {light.name or i + 1}")
             chip.setToolTip(f"{light.name or i + 1}{'' if light.enabled else ' (muted)'}")
@@ -90,17 +88,16 @@ class LampRow(QWidget):
         self.add.setIcon(icon("add", theme))
 
     def _append_chip(self) -> None:
-        index = len(self._chips)
+        index = len(self.chips)
         chip = self._button("", checkable=True)
         chip.setProperty("chip", True)
         chip.clicked.connect(lambda: self._editor.select_light(index))
-        self._group.addButton(chip)
         self._row.insertWidget(index, chip)
-        previous = self._chips[-1] if self._chips else None
+        previous = self.chips[-1] if self.chips else None
         if previous is not None:
             QWidget.setTabOrder(previous, chip)
         QWidget.setTabOrder(chip, self.mute)
-        self._chips.append(chip)
+        self.chips.append(chip)
 
     def _add(self) -> None:
         lights = self._editor.scene.lights

@@ -11,7 +11,7 @@ from qtpy.QtWidgets import QAbstractSpinBox, QComboBox, QLayout, QScrollArea, QT
 
 def in_visual_order(root: QWidget) -> Iterator[QWidget]:
     """Yield every widget that Tab can reach below a widget, in the order of its layouts."""
-    if root.focusPolicy() & Qt.FocusPolicy.TabFocus:
+    if root.focusPolicy() & Qt.FocusPolicy.TabFocus and root.focusProxy() is None:
         yield root
     if isinstance(root, QAbstractSpinBox | QComboBox):
         return
@@ -21,16 +21,16 @@ def in_visual_order(root: QWidget) -> Iterator[QWidget]:
             yield from in_visual_order(root.widget(i))
     elif isinstance(root, QScrollArea):
         yield from in_visual_order(root.widget())
-    elif root.layout() is not None:
+    else:
         yield from _in_layout(root.layout())
 
 
-def _in_layout(layout: QLayout) -> Iterator[QWidget]:
-    for i in range(layout.count()):
-        item = layout.itemAt(i)
-        if item.widget() is not None:
+def _in_layout(layout: QLayout | None) -> Iterator[QWidget]:
+    for i in range(layout.count() if layout is not None else 0):
+        item = layout.itemAt(i) if layout is not None else None
+        if item is not None and item.widget() is not None:
             yield from in_visual_order(item.widget())
-        elif item.layout() is not None:
+        elif item is not None:
             yield from _in_layout(item.layout())
 
 

@@ -43,7 +43,7 @@ class LightPage(Page):
         self.own = Section("", "technique")
         self.more = Section("More", "light_more")
         self.color = ColorButton("Colour of the lamp")
-        self._controls: list[ParamControl] = []
+        self.controls: list[ParamControl] = []
         self._technique_type: type | None = None
         for widget in (self.lamps, self.dial, self.tilt, self.rotation, self.aperture, self.intensity):
             self.add(widget)
@@ -143,7 +143,7 @@ class LightPage(Page):
         if self._technique_type is not type(scene.technique):
             self._technique_type = type(scene.technique)
             self._rebuild(technique.title)
-        for control in self._controls:
+        for control in self.controls:
             control.show_value()
 
     def _rebuild(self, title: str) -> None:
@@ -162,7 +162,7 @@ class LightPage(Page):
         self.more.add(self._color_row)
         for control in rest:
             self.more.add(control)
-        self._controls = essential + rest
+        self.controls = essential + rest
         self.rebuilt.emit()
 
 

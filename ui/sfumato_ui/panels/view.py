@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import (
-    QButtonGroup,
     QCheckBox,
     QGridLayout,
     QHBoxLayout,
@@ -49,7 +48,7 @@ class ViewPage(Page):
         self.lens = slider_for(fields_of(Camera)["view_angle"])
         self.exposure = slider_for(fields_of(Scene)["exposure"])
         self.step = slider_for(fields_of(Scene)["step"])
-        self.background = QButtonGroup(self)
+        self.background: list[QPushButton] = []
         self.more = Section("More", "view_more")
         self.theme = ChoiceBox()
         self.add_heading("Camera")
@@ -90,12 +89,13 @@ class ViewPage(Page):
         layout = QHBoxLayout()
         layout.setSpacing(6)
         column.addLayout(layout)
-        for i, name in enumerate(BACKGROUNDS):
+        for name in BACKGROUNDS:
             button = QPushButton(name)
             button.setCheckable(True)
             button.setAccessibleName(f"Background: {name}")
             button.setProperty("compact", True)
-            self.background.addButton(button, i)
+            button.clicked.connect(lambda _=False, name=name: self._set_background(name))
+            self.background.append(button)
             layout.addWidget(button, 1)
         return row
 
@@ -118,13 +118,14 @@ class ViewPage(Page):
         self.lens.drag_finished.connect(editor.end)
         bind_slider(self.exposure, editor, "exposure", "exposure")
         bind_slider(self.step, editor, "step", "sampling")
-        self.background.idClicked.connect(
-            lambda i: editor.change("Change the background", background=tuple(BACKGROUNDS.values())[i])
-        )
         self.theme.activated.connect(lambda i: self.theme_chosen.emit(self.theme.itemData(i)))
         editor.changed.connect(lambda old, new: self.refresh())
 
     # -- edits and showing ------------------------------------------------------------------------
+    def _set_background(self, name: str) -> None:
+        self._editor.change("Change the background", background=BACKGROUNDS[name])
+        self.refresh()
+
     def _set_parallel(self, on: bool) -> None:
         camera = self._editor.scene.camera
         if camera is not None:
@@ -143,10 +144,8 @@ class ViewPage(Page):
         scene = self._editor.scene
         self.exposure.set_number(scene.exposure)
         self.step.set_number(scene.step)
-        self.background.setExclusive(False)
-        for i, color in enumerate(BACKGROUNDS.values()):
-            self.background.button(i).setChecked(color == scene.background)
-        self.background.setExclusive(True)
+        for button, color in zip(self.background, BACKGROUNDS.values(), strict=True):
+            button.setChecked(color == scene.background)
         self.theme.setCurrentIndex(self.theme.findData(current_theme().name, Qt.ItemDataRole.UserRole))
         camera = scene.camera
         for widget in (self.views, self.parallel, self.lens):

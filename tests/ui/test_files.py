@@ -1,0 +1,219 @@
+"""Opening and saving as a user does it: dropped folders, dialogs, bad files, unsaved work."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pydicom.dataset import FileDataset, FileMetaDataset
+from pydicom.uid import CTImageStorage, ExplicitVRLittleEndian, generate_uid
+from pytestqt.qtbot import QtBot
+from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
+from qtpy.QtGui import QDragEnterEvent, QDropEvent
+from qtpy.QtWidgets import QApplication, QDialog, QFileDialog, QLineEdit, QMessageBox, QPushButton
+
+from sfumato import Scene
+from sfumato.export.png import open_png
+from sfumato_ui.dialogs import PictureDialog, SeriesDialog
+from sfumato_ui.window import MainWindow
+
+
+def write_series(folder: Path, count: int, description: str, size: int = 32) -> None:
+    """Write a small CT series: a bright ball in air."""
+    folder.mkdir(exist_ok=True)
+    series, study, frame = generate_uid(), generate_uid(), generate_uid()
+    y, x = np.mgrid[0:size, 0:size] * (2 / (size - 1)) - 1
+    for i in range(count):
+        z = 2 * i / (count - 1) - 1
+        hounsfield = np.where(x * x + y * y + z * z < 0.6, 800, -1000)
+        meta = FileMetaDataset()
+        meta.TransferSyntaxUID = ExplicitVRLittleEndian
+        meta.MediaStorageSOPClassUID = CTImageStorage
+        meta.MediaStorageSOPInstanceUID = generate_uid()
+        image = FileDataset(None, {}, file_meta=meta, preamble=b"\0" * 128)
+        image.SOPClassUID, image.SOPInstanceUID = CTImageStorage, meta.MediaStorageSOPInstanceUID
+        image.StudyInstanceUID, image.SeriesInstanceUID, image.FrameOfReferenceUID = study, series, frame
+        image.Modality, image.SeriesDescription, image.InstanceNumber = "CT", description, i + 1
+        image.ImagePositionPatient, image.ImageOrientationPatient = [0, 0, i * 1.5], [1, 0, 0, 0, 1, 0]
+        image.PixelSpacing, image.SliceThickness = [1.0, 1.0], 1.5
+        image.Rows = image.Columns = size
+        image.SamplesPerPixel, image.PhotometricInterpretation = 1, "MONOCHROME2"
+        image.BitsAllocated, image.BitsStored, image.HighBit, image.PixelRepresentation = 16, 16, 15, 1
+        image.RescaleSlope, image.RescaleIntercept = 1, -1024
+        image.PixelData = (hounsfield + 1024).astype("<i2").tobytes()
+        image.save_as(folder / f"{description}-{i:03d}.dcm", enforce_file_format=True)
+
+
+def drop(window: MainWindow, path: Path) -> None:
+    """Drop a file or folder on the window."""
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(path))])
+    at = QPoint(200, 200)
+    copy, left, none = Qt.DropAction.CopyAction, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    enter = QDragEnterEvent(at, copy, data, left, none)
+    QApplication.sendEvent(window, enter)
+    assert enter.isAccepted()
+    QApplication.sendEvent(window, QDropEvent(QPointF(at), copy, data, left, none))
+
+
+def dialog_of(window: MainWindow, qtbot: QtBot, kind: type[QDialog]) -> Any:
+    """Wait for a dialog of a kind and return it."""
+    found: list[QDialog] = []
+
+    def there() -> bool:
+        found[:] = [d for d in window.findChildren(kind) if d.isVisible()]
+        return bool(found)
+
+    qtbot.waitUntil(there, timeout=20_000)
+    return found[0]
+
+
+def type_file_name(dialog: QFileDialog, qtbot: QtBot, path: Path) -> None:
+    """Type a path into a file dialog and press Enter."""
+    line = dialog.findChild(QLineEdit)
+    line.selectAll()
+    qtbot.keyClicks(line, str(path))
+    qtbot.keyClick(line, Qt.Key.Key_Return)
+
+
+@pytest.fixture(autouse=True)
+def qt_file_dialogs(qapp: QApplication) -> Any:
+    """Use Qt's own file dialogs, into which a test can type."""
+    qapp.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs, True)
+    yield
+    qapp.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs, False)
+
+
+def test_dropping_a_dicom_folder_opens_it(
+    make_window: Any, hand_of: Any, qtbot: QtBot, tmp_path: Path
+) -> None:
+    write_series(tmp_path / "study", 12, "head")
+    window = make_window()
+    hand = hand_of(window)
+    drop(window, tmp_path / "study")
+    assert "Opening study" in window.messages.text, "progress shows at once"
+    qtbot.waitUntil(lambda: window.editor.scene.volume is not None, timeout=30_000)
+    assert window.editor.scene.volume.dims == (32, 32, 12)
+    assert window.editor.scene.volume.spacing == pytest.approx((1, 1, 1.5))
+    hand.wait_for_picture()
+    assert (hand.pixels()[..., 3] > 200).mean() > 0.1
+    assert "32 × 32 × 12" in window.status.data.text()
+    assert "study" in window.windowTitle() or "head" in window.windowTitle()
+    assert not window.editor.document.modified
+
+
+def test_several_series_are_offered_and_enter_opens_the_largest(
+    make_window: Any, qtbot: QtBot, tmp_path: Path
+) -> None:
+    write_series(tmp_path / "study", 6, "scout")
+    write_series(tmp_path / "study", 14, "thorax")
+    window = make_window()
+    drop(window, tmp_path / "study")
+    dialog = dialog_of(window, qtbot, SeriesDialog)
+    assert dialog.list.topLevelItemCount() == 2
+    assert "thorax" in dialog.list.currentItem().text(0)
+    qtbot.keyClick(dialog.list, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: window.editor.scene.volume is not None, timeout=30_000)
+    assert window.editor.scene.volume.dims[2] == 14
+
+
+def test_a_bad_file_shows_a_message_and_the_picture_stays(
+    window: MainWindow, hand: Any, qtbot: QtBot, tmp_path: Path
+) -> None:
+    before, scene = hand.pixels(), window.editor.scene
+    bad = tmp_path / "broken.nii.gz"
+    bad.write_bytes(b"no volume at all")
+    drop(window, bad)
+    qtbot.waitUntil(lambda: window.messages.kind == "error", timeout=30_000)
+    assert "broken.nii.gz" in window.messages.text
+    assert "\n" not in window.messages.text
+    assert window.editor.scene is scene
+    assert np.array_equal(hand.pixels(), before)
+
+
+def test_loading_can_be_cancelled(window: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
+    scene = window.editor.scene
+    np.save(tmp_path / "large.npy", np.zeros((200, 200, 200), np.float32))
+    drop(window, tmp_path / "large.npy")
+    cancel = next(b for b in window.messages.findChildren(QPushButton) if b.text() == "Cancel")
+    qtbot.mouseClick(cancel, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not window.files.loader.alive, timeout=30_000)
+    qtbot.wait(50)
+    assert window.editor.scene is scene
+    assert not window.messages.isVisible()
+
+
+def test_saving_the_picture(window: MainWindow, hand: Any, qtbot: QtBot, tmp_path: Path) -> None:
+    from PIL import Image
+
+    hand.press(Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
+    dialog = dialog_of(window, qtbot, PictureDialog)
+    assert dialog.size_in_pixels == window.viewport.pixel_size
+    dialog.wide.selectAll()
+    qtbot.keyClicks(dialog.wide, "320")
+    dialog.tall.selectAll()
+    qtbot.keyClicks(dialog.tall, "200")
+    qtbot.keyClick(dialog, Qt.Key.Key_Return)
+    target = tmp_path / "picture.png"
+    type_file_name(dialog_of(window, qtbot, QFileDialog), qtbot, target)
+    qtbot.waitUntil(lambda: "Saved" in window.messages.text, timeout=90_000)
+    with Image.open(target) as picture:
+        assert picture.size == (320, 200)
+        assert np.asarray(picture)[..., 3].min() == 255, "what is saved is what is seen, the grey too"
+    again = open_png(target, volume=window.editor.scene.volume)
+    assert again == window.editor.scene
+
+
+def test_a_picture_that_cannot_be_written_is_a_message(
+    window: MainWindow, qtbot: QtBot, tmp_path: Path
+) -> None:
+    window.files.save_picture(str(tmp_path / "missing" / "x.png"), (64, 64))
+    qtbot.waitUntil(lambda: window.messages.kind == "error", timeout=60_000)
+    assert "missing" in window.messages.text
+
+
+def test_saving_the_scene_and_opening_it_again(
+    window: MainWindow, hand: Any, qtbot: QtBot, tmp_path: Path
+) -> None:
+    np.save(tmp_path / "ball.npy", window.editor.scene.volume.data)
+    drop(window, tmp_path / "ball.npy")
+    qtbot.waitUntil(
+        lambda: window.editor.scene.volume.info.path.endswith("ball.npy") and window.messages.kind == ""
+    )
+    window.editor.change_light("Move the light", tilt=55.0)
+    assert window.isWindowModified()
+    hand.press(Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    target = tmp_path / "study.sfumato"
+    type_file_name(dialog_of(window, qtbot, QFileDialog), qtbot, target)
+    assert target.exists()
+    assert not window.isWindowModified()
+    assert "study" in window.windowTitle()
+    saved = window.editor.scene
+    window.editor.change_light("Move the light", tilt=20.0)
+    hand.press(Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    assert Scene.open(target).lights[0].tilt == 20, "the second time needs no question"
+    window.editor.reset(saved)
+    drop(window, target)
+    qtbot.waitUntil(lambda: window.editor.scene.lights[0].tilt == 20, timeout=30_000)
+
+
+@pytest.mark.parametrize(("answer", "stays"), [("Cancel", True), ("Discard", False)])
+def test_closing_with_unsaved_work_asks(window: MainWindow, qtbot: QtBot, answer: str, stays: bool) -> None:
+    window.editor.change_light("Move the light", tilt=50.0)
+    asked: list[str] = []
+
+    def click() -> None:
+        box = QApplication.activeModalWidget()
+        assert isinstance(box, QMessageBox)
+        asked.append(box.text())
+        button = box.button(getattr(QMessageBox.StandardButton, answer))
+        qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+
+    QTimer.singleShot(200, click)
+    window.close()
+    assert asked
+    assert "ball" in asked[0]
+    assert window.isVisible() is stays
+    assert window.worker.alive is stays
