@@ -12,6 +12,7 @@ axes x, y and z. Whatever a reader had to decide is told in ``volume.info.notice
 from __future__ import annotations
 
 import importlib
+import logging
 import os
 import warnings
 from collections.abc import Callable
@@ -199,10 +200,24 @@ def _generated(scheme: str, name: str, text: str) -> Volume:
 
 
 @contextmanager
+def _quiet_loggers() -> Iterator[None]:
+    """Keep readers' libraries from writing to stderr what a `LoadError` or a notice says better."""
+    loggers = [logging.getLogger(name) for name in ("tifffile", "pydicom")]
+    before = [logger.disabled for logger in loggers]
+    for logger in loggers:
+        logger.disabled = True
+    try:
+        yield
+    finally:
+        for logger, disabled in zip(loggers, before, strict=True):
+            logger.disabled = disabled
+
+
+@contextmanager
 def _guarded(task: Task) -> Iterator[None]:
     """Let nothing but `SfumatoError` out, and no library's warnings."""
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _quiet_loggers():
             warnings.simplefilter("ignore")
             yield
     except LoadError:

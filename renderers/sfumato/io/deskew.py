@@ -105,7 +105,8 @@ def even(positions: np.ndarray) -> tuple[float, list[tuple[int, int, float]], st
     gaps = np.diff(positions)
     n, extent = len(positions), float(positions[-1] - positions[0])
     mean, median = extent / (n - 1), float(np.median(gaps))
-    if np.abs(positions - (positions[0] + mean * np.arange(n))).max() <= 0.1 * mean:
+    off_line = positions - mean * np.arange(n)
+    if np.ptp(off_line) <= 0.2 * mean:
         return mean, [(i, i, 0.0) for i in range(n)], ""
     ratio = gaps / median
     whole = np.rint(ratio)

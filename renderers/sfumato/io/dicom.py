@@ -106,7 +106,7 @@ def _chosen(found: list[Series], task: Task) -> Series:
 # -- geometry --------------------------------------------------------------------------------------
 def _plan(series: Series, task: Task, notices: list[str]) -> _Plan:
     depths = series.depths()
-    if depths is None or len(np.unique(np.round(depths, 3))) == 1 < len(depths):
+    if depths is None:
         return _plan_without_places(series, task, notices)
     frames = _one_per_place(series.frames, depths, task, notices)
     if len(frames) < 2:

@@ -156,7 +156,7 @@ class SeriesInfo:
 def info_of(series: Series) -> SeriesInfo:
     """Return the public description of a series."""
     depths, count = series.depths(), series.slices
-    distance = series.slice_distance
+    distance = series.slice_distance if series.spacing_known else 1.0
     if depths is not None and count > 1:
         distance = float(np.median(np.diff(np.unique(np.round(depths, 2)))))
     dy, dx = series.frames[0].spacing

@@ -42,6 +42,8 @@ def _file(task: Task) -> Reading:
 def _by_content(path: Path) -> Callable[[Task], Reading] | None:
     with path.open("rb") as stream:
         head = stream.read(512)
+    if head[128:132] == b"DICM":  # first, since the preamble before it may look like a TIFF
+        return dicom.read
     if tiff.is_tiff(head):
         return itk.read_other if path.suffix.lower() == ".lsm" else tiff.read
     signs: tuple[tuple[bytes, Callable[[Task], Reading]], ...] = (

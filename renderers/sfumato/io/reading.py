@@ -155,7 +155,7 @@ def check_claim(task: Task, claimed: int, stored: int, compressed: bool = False)
     """
     if claimed > stored * (20000 if compressed else 1):
         raise task.error(
-            f"its header announces {size_text(claimed)} of voxels, but it has only {size_text(stored)} of data",
+            f"it announces {size_text(claimed)} of voxels, but has only {size_text(stored)} of data",
             "it is truncated or damaged: copy or export it again",
         )
 
