@@ -105,6 +105,16 @@ class Program:
         """Draw rectangles, six vertices each, placed by the vertex shader (software renderers are slow at instances)."""
         self._array.render(moderngl.TRIANGLES, vertices=6 * count)
 
+    def load_mesh(self, buffer: Any, attribute: str) -> None:
+        """Take triangles from a buffer of float32 (x, y, z), which the vertex shader gets as an attribute."""
+        if self._mesh is not None:
+            self._mesh.release()
+        self._mesh = self.device.ctx.vertex_array(self._program, [(buffer, "3f", attribute)])
+
+    def draw_mesh(self, first: int, count: int) -> None:
+        """Draw a range of the vertices of `load_mesh` as triangles."""
+        self._mesh.render(moderngl.TRIANGLES, vertices=count, first=first)
+
     def release(self) -> None:
         """Free the GPU objects."""
         if self._mesh is not None:
