@@ -1,0 +1,148 @@
+"""``sfumato bench``: options, and the way from them to a report."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import sfumato
+
+from . import machine
+from .measure import run, warm_up
+from .ratios import outcomes
+from .report import Report, save_pictures
+from .rows import Row, Stage, rows
+from .setting import Setting
+
+#: What ``--quick`` asks for in place of the defaults.
+QUICK = {"rounds": 3, "size": 128, "viewport": 256}
+DEFAULTS = {"rounds": 7, "size": 256, "viewport": 512}
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run the benchmark.
+
+    Parameters
+    ----------
+    argv : sequence of str
+        Options, without the program's name.
+
+    Returns
+    -------
+    int
+        Exit status: 0 done, whether goals were met or not; 1 no device or a file that cannot be written; 2 wrong usage.
+    """
+    try:
+        options = _parser().parse_args(list(argv))
+        chosen = _chosen(options)
+    except SystemExit as stop:  # argparse's way to say that it has said all
+        return int(stop.code or 0)
+    try:
+        report = measure(chosen, options.rounds, sys.stderr.isatty())
+        print(report.text())
+        _write(report, options)
+    except (sfumato.SfumatoError, OSError) as error:
+        print(f"sfumato bench: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def measure(chosen: Sequence[Row], rounds: int, talkative: bool = False) -> Report:
+    """Measure rows in interleaved rounds.
+
+    Parameters
+    ----------
+    chosen : sequence of Row
+        At least one.
+    rounds : int
+        How often each has its turn.
+    talkative : bool
+        Tell on stderr how far it is.
+
+    Raises
+    ------
+    GpuError
+        If there is no device to draw on.
+    """
+    stage = Stage()
+    try:
+        found = machine.describe(stage.renderer.name, stage.renderer.version)
+        tell = _tell if talkative else _say_nothing
+        lineup = warm_up(chosen, stage, tell)
+        run(lineup, rounds, tell)
+        tell("")
+        results = [result for result, _ in lineup]
+        software = bool(found["software_renderer"])
+        clock = "cpu" if software else "wall"
+        ratios = outcomes(results, clock, on_gpu=not software)
+        return Report(found, chosen[0].setting, rounds, clock, results, ratios, stage.peer_device)
+    finally:
+        stage.close()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="sfumato bench",
+        description="Measure how long a frame takes, ours and our peers' where installed, in interleaved runs.",
+    )
+    whole = _whole_number
+    parser.add_argument("--rounds", type=whole(1, 1000), help=f"turns of each contender (default {DEFAULTS['rounds']})")
+    parser.add_argument("--size", type=whole(16, 1024), help=f"voxels along a side (default {DEFAULTS['size']})")
+    parser.add_argument("--viewport", type=whole(16, 4096), help=f"pixels along a side (default {DEFAULTS['viewport']})")
+    parser.add_argument("--quick", action="store_true", help="a smaller task and fewer rounds")
+    parser.add_argument("--only", metavar="ID,...", help="only these rows: " + ", ".join(row.id for row in rows(Setting())))
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write all measurements")
+    parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the medians (needs matplotlib)")
+    parser.add_argument("--pictures", type=Path, metavar="DIR", help="write what each row drew")
+    return parser
+
+
+def _whole_number(low: int, high: int):  # type: ignore[no-untyped-def]  # argparse names the type in its errors
+    def number(text: str) -> int:
+        value = int(text)
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"{value} is not within {low} to {high}")
+        return value
+
+    return number
+
+
+def _chosen(options: argparse.Namespace) -> tuple[Row, ...]:
+    """Fill in what was not given and return the rows asked for."""
+    for name, value in (QUICK if options.quick else DEFAULTS).items():
+        if getattr(options, name) is None:
+            setattr(options, name, value)
+    table = rows(Setting(size=options.size, viewport=options.viewport))
+    if options.only is None:
+        return table
+    wanted = [name.strip() for name in options.only.split(",")]
+    unknown = sorted(set(wanted) - {row.id for row in table})
+    if unknown:
+        print(f"sfumato bench: --only: no such row: {', '.join(unknown)}", file=sys.stderr)
+        raise SystemExit(2)
+    return tuple(row for row in table if row.id in wanted)
+
+
+def _write(report: Report, options: argparse.Namespace) -> None:
+    if options.json is not None:
+        options.json.write_text(json.dumps(report.to_json(), indent=1) + "\n", encoding="utf-8")
+    if options.pictures is not None:
+        save_pictures(report.results, options.pictures)
+    if options.plot is not None:
+        from .plot import save_plot
+
+        try:
+            save_plot(report, options.plot)
+        except ImportError:
+            print("no plot: matplotlib is not installed", file=sys.stderr)
+
+
+def _tell(text: str) -> None:
+    print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+
+
+def _say_nothing(text: str) -> None:
+    del text

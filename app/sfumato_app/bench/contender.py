@@ -1,0 +1,23 @@
+"""What is measured: something that draws one finished frame of a setting."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+
+class Contender(Protocol):
+    """Draws one setting in one way; everything that only happens once is done when it is made or warmed up."""
+
+    def draw(self) -> None:
+        """Draw one frame of full quality and wait until it is finished."""
+        ...
+
+    def light(self) -> np.ndarray:
+        """Return the last frame in linear light, float32 in [0, 1], shape (height, width, 3), row 0 on top."""
+        ...
+
+
+class Unavailable(Exception):  # noqa: N818 - not an error: the row is left out and says why
+    """A contender cannot take part here; the message says why."""

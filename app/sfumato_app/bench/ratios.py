@@ -1,0 +1,89 @@
+"""The ratios between rows, and what we want of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from .measure import Result, Spread
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A bound on a ratio's median: at most `limit`, or with `at_least` no less; on a GPU only with `gpu`."""
+
+    limit: float
+    at_least: bool = False
+    gpu: bool = False
+
+    def met(self, median: float) -> bool:
+        """Tell whether a median is good enough."""
+        return median >= self.limit if self.at_least else median <= self.limit
+
+    def __str__(self) -> str:
+        return f"{'>=' if self.at_least else '<='} {self.limit:g}{' (GPU)' if self.gpu else ''}"
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """How many times as long one row takes as another."""
+
+    label: str
+    above: str
+    below: str
+    goal: Goal | None = None
+
+    @property
+    def id(self) -> str:
+        """Name in the report."""
+        return f"{self.above} / {self.below}"
+
+
+#: The project's goals; the 1.39 is the paper's own, for its gecko on a GPU (Soltesova2010, section 5.2).
+RATIOS = (
+    Ratio("any light / headlamp", "multidirectional", "directional", Goal(1.05)),
+    Ratio("light turning / at rest", "multidirectional-turning", "multidirectional", Goal(1.02)),
+    Ratio("light tilting / at rest", "multidirectional-tilting", "multidirectional", Goal(1.02)),
+    Ratio("shadows / local shading", "multidirectional", "slices-phong", Goal(1.39, gpu=True)),
+    Ratio("VTK unshaded / ours", "vtk-gpu", "raycast", Goal(4.0, at_least=True)),
+    Ratio("VTK shaded / ours", "vtk-gpu-shaded", "raycast-phong"),
+    Ratio("VTK shadows / ours", "vtk-gpu-shadows", "multidirectional", Goal(4.0, at_least=True)),
+    Ratio("VTK on the CPU / ours", "vtk-cpu", "raycast"),
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A ratio as measured, by the clock that counts and by the other."""
+
+    ratio: Ratio
+    cpu: Spread
+    wall: Spread
+    verdict: str
+
+
+def outcomes(results: Sequence[Result], clock: str, on_gpu: bool, ratios: Sequence[Ratio] = RATIOS) -> list[Outcome]:
+    """Return all ratios whose two rows were measured.
+
+    Parameters
+    ----------
+    clock : str
+        ``cpu`` or ``wall``: the time by which goals are judged.
+    on_gpu : bool
+        Whether goals that are meant for a GPU count.
+    """
+    by_id = {result.row.id: result for result in results if not result.missing}
+    return [_outcome(ratio, by_id, clock, on_gpu) for ratio in ratios if ratio.above in by_id and ratio.below in by_id]
+
+
+def _outcome(ratio: Ratio, by_id: Mapping[str, Result], clock: str, on_gpu: bool) -> Outcome:
+    above, below = by_id[ratio.above], by_id[ratio.below]
+    spreads = {
+        name: Spread.of([a / max(b, 1e-9) for a, b in zip(getattr(above, name), getattr(below, name), strict=True)])
+        for name in ("cpu", "wall")
+    }
+    goal = ratio.goal
+    verdict = "-"
+    if goal is not None and (on_gpu or not goal.gpu):
+        verdict = "pass" if goal.met(spreads[clock].median) else "short"
+    return Outcome(ratio, spreads["cpu"], spreads["wall"], verdict)

@@ -1,0 +1,106 @@
+"""The rows of the benchmark's table: who draws what. A later technique, volume or size is one more line in `rows`."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import sfumato
+
+from .contender import Contender
+from .ours import MovingLight, Ours
+from .setting import Setting
+
+if TYPE_CHECKING:
+    from .peer_vtk import VtkStage
+
+
+@dataclass
+class Stage:
+    """What contenders share: our renderer, and VTK's window for each setting, made when first asked for."""
+
+    renderer: sfumato.Renderer = field(default_factory=lambda: sfumato.Renderer())
+    windows: dict[Setting, VtkStage] = field(default_factory=dict)
+
+    def window(self, setting: Setting) -> VtkStage:
+        """Return VTK's window for a setting; `Unavailable` if there is no VTK."""
+        from .peer_vtk import VtkStage
+
+        if setting not in self.windows:
+            self.windows[setting] = VtkStage(setting)
+        return self.windows[setting]
+
+    @property
+    def peer_device(self) -> str:
+        """Name of the graphics device that VTK drew on; empty if it did not draw."""
+        return next((window.device for window in self.windows.values()), "")
+
+    def close(self) -> None:
+        """Free our part of the GPU; VTK frees its own with its last window."""
+        self.renderer.close()
+
+
+@dataclass(frozen=True)
+class Row:
+    """One contender in one setting.
+
+    Parameters
+    ----------
+    id : str
+        Short name, unique; ratios refer to it.
+    label : str
+        For people.
+    peer : bool
+        Whether it is somebody else's renderer.
+    setting : Setting
+        What is drawn.
+    make : callable
+        Makes the contender on a stage; raises `Unavailable` if it cannot.
+    """
+
+    id: str
+    label: str
+    peer: bool
+    setting: Setting
+    make: Callable[[Stage, Setting], Contender]
+
+
+def rows(setting: Setting) -> tuple[Row, ...]:
+    """Return all rows for a setting, those to be compared beside each other."""
+    table = (
+        ("raycast", "ray casting, unlit", _ours("raycast")),
+        ("vtk-gpu", "VTK GPU mapper, unshaded", _vtk("gpu_mapper", shade=False)),
+        ("vtk-cpu", "VTK fixed point (CPU), unshaded", _vtk("cpu_mapper", shade=False)),
+        ("slices", "slices, unlit", _ours("slices")),
+        ("raycast-phong", "ray casting, Phong", _ours("raycast-phong")),
+        ("vtk-gpu-shaded", "VTK GPU mapper, shaded", _vtk("gpu_mapper", shade=True)),
+        ("vtk-cpu-shaded", "VTK fixed point (CPU), shaded", _vtk("cpu_mapper", shade=True)),
+        ("half-angle", "half-angle slicing", _ours("half-angle")),
+        ("slices-phong", "slices, Phong", _ours("slices-phong")),
+        ("directional", "directional occlusion", _ours("directional")),
+        ("multidirectional", "multidirectional occlusion", _ours("multidirectional")),
+        ("multidirectional-turning", "... its light turning every frame", _moving("multidirectional", "rotation")),
+        ("multidirectional-tilting", "... its light tilting every frame", _moving("multidirectional", "tilt")),
+        ("vtk-gpu-shadows", "VTK GPU mapper, volumetric shadows", _vtk("gpu_shadow_mapper", shade=True)),
+    )
+    return tuple(Row(key, label, key.startswith("vtk-"), setting, make) for key, label, make in table)
+
+
+def _ours(technique: str) -> Callable[[Stage, Setting], Contender]:
+    return lambda stage, setting: Ours(stage.renderer, setting, technique)
+
+
+def _moving(technique: str, angle: str) -> Callable[[Stage, Setting], Contender]:
+    return lambda stage, setting: MovingLight(stage.renderer, setting, technique, angle)
+
+
+def _vtk(mapper: str, *, shade: bool) -> Callable[[Stage, Setting], Contender]:
+    return functools.partial(_make_vtk, mapper=mapper, shade=shade)
+
+
+def _make_vtk(stage: Stage, setting: Setting, *, mapper: str, shade: bool) -> Contender:
+    from . import peer_vtk
+
+    return peer_vtk.Vtk(stage.window(setting), getattr(peer_vtk, mapper), shade=shade)
