@@ -71,7 +71,7 @@ def render(
 
     width, height = parse_size(size)
     target, linear = target_of(path, output, linear)
-    aspect = width / max(1, height)
+    aspect = width / height
     scene = open_scene(path, volume, read)
     if not is_scene(path) and scene.camera is not None:
         scene = scene.with_(camera=widened(scene.camera, aspect))

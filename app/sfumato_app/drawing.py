@@ -23,15 +23,24 @@ def target_of(path: str, output: Path | None, linear: bool) -> tuple[Path, bool]
         If the ending does not fit.
     """
     if output is None:
-        output = Path(stem_of(path) + (".exr" if linear else ".png"))
+        output = _default_target(path, ".exr" if linear else ".png")
     suffix = output.suffix.lower()
     if linear and suffix not in LINEAR_SUFFIXES:
         raise UsageError(f"-o {output}: with --linear it must end in {' or '.join(LINEAR_SUFFIXES)}")
     if suffix not in (".png", *LINEAR_SUFFIXES):
         raise UsageError(f"-o {output}: it must end in .png, {' or '.join(LINEAR_SUFFIXES)}")
-    if output.exists() and Path(path).exists() and output.samefile(path):
+    if _same(output, path):
         raise UsageError(f"-o {output}: this is the input; give another name")
     return output, suffix in LINEAR_SUFFIXES
+
+
+def _default_target(path: str, suffix: str) -> Path:
+    target = Path(stem_of(path) + suffix)
+    return target.with_stem(target.stem + "-again") if _same(target, path) else target
+
+
+def _same(target: Path, path: str) -> bool:
+    return target.exists() and Path(path).exists() and target.samefile(path)
 
 
 def stem_of(path: str) -> str:

@@ -18,6 +18,7 @@ from sfumato.scene.params import from_json
 from sfumato.techniques import techniques
 
 from .errors import UsageError
+from .numbers import whole
 from .opening import SCENE_SUFFIX
 
 if TYPE_CHECKING:
@@ -59,7 +60,8 @@ class SceneFlags:
     camera: Annotated[View | None, Parameter(help="A standard view.")] = None
     transparent: Annotated[bool, Parameter(negative="", help="Leave the background out.")] = False
     frames: Annotated[
-        int | None, Parameter(help="Jittered frames to accumulate: more are smoother, and take longer.")
+        int | None,
+        Parameter(converter=whole, help="Jittered frames to accumulate: more are smoother, and take longer."),
     ] = None
     set: Annotated[
         list[str] | None,
@@ -115,7 +117,8 @@ def _flag_type(declared: _Declared) -> Any:
     kind = Literal[tuple(choices)] if choices else declared.field.type
     words = f"{_help(declared.field)}; {', '.join(declared.owners)}"
     name = "--" + declared_flag(declared.field.name)
-    return Annotated[kind | None, Parameter(name=name, help=words, group=OWN)]
+    converter = whole if kind is int else None
+    return Annotated[kind | None, Parameter(name=name, help=words, group=OWN, converter=converter)]
 
 
 def declared_flag(name: str) -> str:
@@ -146,7 +149,10 @@ def parse_size(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d{1,6})[xX×](\d{1,6})", text)
     if match is None:
         raise UsageError(f"--size {text}: WIDTHxHEIGHT is needed, as in 1920x1080")
-    return int(match[1]), int(match[2])
+    width, height = int(match[1]), int(match[2])
+    if not (width and height):
+        raise UsageError(f"--size {text}: at least 1x1 is needed")
+    return width, height
 
 
 def changed(scene: Scene, flags: SceneFlags, own: Any, aspect: float) -> Scene:

@@ -11,6 +11,8 @@ from cyclopts import Group, Parameter
 import sfumato
 from sfumato import LoadError, Scene, Volume
 
+from .numbers import whole
+
 #: The embedded sample that is shown when nothing was asked for.
 DEFAULT_SAMPLE = "sample:hand"
 SCENE_SUFFIX = ".sfumato"
@@ -36,7 +38,8 @@ class ReadFlags:
         str | None, Parameter(help="Series of a DICOM folder: its place (0, 1, …) or key.", group=READING)
     ] = None
     frame: Annotated[
-        int | None, Parameter(help="Frame (time, echo, channel) of a file with several.", group=READING)
+        int | None,
+        Parameter(converter=whole, help="Frame (time, echo) of a file with several.", group=READING),
     ] = None
     level: Annotated[
         int | None,
