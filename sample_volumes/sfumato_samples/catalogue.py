@@ -183,8 +183,8 @@ ENTRIES: dict[str, Entry] = {
             "bonsai", "Bonsai", "A small tree: roots, crooked trunk, branches with clumps of leaves, in a glazed pot",
             (136, 120, 136), (1.0, 1.0, 1.0), "label", dtype="uint8", view="front",
             transfer=(
-                (30, (0.10, 0.22, 0.36), 1.0), (55, (0.10, 0.22, 0.36), 0.0), (88, _BARK, 0.0), (98, _BARK, 0.9),
-                (112, _BARK, 0.9), (124, _BARK, 0.0), (140, _LEAF, 0.0), (190, _LEAF, 0.9), (255, _LEAF, 0.9),
+                (30, (0.10, 0.22, 0.36), 1.0), (55, (0.10, 0.22, 0.36), 0.0), (94, _BARK, 0.0), (102, _BARK, 0.9),
+                (108, _BARK, 0.9), (116, _BARK, 0.0), (120, _LEAF, 0.0), (160, _LEAF, 0.9), (255, _LEAF, 0.9),
             ),
         ),
         Entry(

@@ -75,7 +75,7 @@ def _spine(canvas: Canvas) -> None:
 
 
 def _head(canvas: Canvas) -> None:
-    """Paint the skull's roof, the ring of the eye, jaws, and the gill cover as a thin curved plate."""
+    """Paint the skull's roof, the ring of the eye, jaws, cheek and gill cover."""
     crown = sdf.Frame.along((-99, 0, 14), (1, 0, 0.46), (0, 0, 1))
     for size, value in ((1.0, BONE), (0.72, 250.0)):
         radii = (11 * size, 7 * size, 31 * size)
@@ -84,24 +84,14 @@ def _head(canvas: Canvas) -> None:
         canvas.chain(BONE, np.array([(-128, side * 2, -4), (-118, side * 9, -9), (-106, side * 13, -14)]), 2.4, 2.0)
         canvas.chain(BONE, np.array([(-129, side * 2, -8), (-116, side * 8, -17), (-100, side * 12, -22)]), 2.2, 2.0)
         ring = [(-109 + 7 * math.cos(t), side * 13.0, 4 + 7 * math.sin(t)) for t in np.linspace(0, 2 * math.pi, 15)]
-        canvas.chain(BONE, np.array(ring), 1.6)
-        _plate(canvas, (-83, side * 13, -5), (17, 9, 24), side)
-        _plate(canvas, (-98, side * 12, -13), (14, 6, 11), side)
+        canvas.chain(BONE, np.array(ring), 2.3)
+        canvas.ellipsoid(BONE * 0.9, (-83, side * 18, -5), (16, 2.8, 23))
+        canvas.ellipsoid(BONE * 0.9, (-99, side * 14.5, -13), (12, 2.6, 9))
         for i in range(4):
             arch = [(-92 + 3.5 * i + 6 * math.cos(t), side * (5 + 2 * math.sin(t)), -6 + 15 * math.sin(t)) for t in np.linspace(-1.4, 1.4, 7)]
             canvas.chain(RAY, np.array(arch), 1.2)
         canvas.chain(BONE, np.array([(-70, side * 14, 10), (-66, side * 17, -8), (-74, side * 12, -30)]), 2.4, 1.8)
     canvas.rod(BONE, (-92, 0, 12), (-78, 0, 5), 6, 4)
-
-
-def _plate(canvas: Canvas, center: tuple[float, float, float], radii: tuple[float, float, float], side: int) -> None:
-    """Paint the outer side of an ellipsoid's shell, 2 mm thick."""
-
-    def shell(a: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
-        d = sdf.ellipsoid(a, center, radii)
-        return np.maximum(np.abs(d) - np.float32(1.1), np.float32(side * center[1] + 0.5) - side * a[1])
-
-    canvas.paint(BONE * 0.9, shell, np.subtract(center, radii) - 2, np.add(center, radii) + 2)
 
 
 def _fins(canvas: Canvas) -> None:

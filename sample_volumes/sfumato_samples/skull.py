@@ -36,7 +36,8 @@ def _cranium(bone: Field) -> None:
     bone.pad(WORLD, (0, -38, 38), (54, 44, 46), 20)
     bone.pad(WORLD, (0, 46, 6), (54, 48, 42), 20)
     for side in (-1, 1):
-        bone.pad(WORLD, (side * 55, 20, -22), (11, 14, 20), 12)  # mastoids
+        bone.pad(WORLD, (side * 44, 14, -8), (14, 26, 16), 12)
+        bone.pad(WORLD, (side * 53, 22, -22), (11, 14, 20), 12)  # mastoids
         bone.rod((side * 10, -80, 18), (side * 46, -66, 15), 6.0, 5.5, 9)  # brows
 
 
@@ -44,7 +45,7 @@ def _face(bone: Field) -> None:
     bone.pad(WORLD, (0, -58, -30), (35, 30, 26), 12)
     bone.rod((0, -80, 10), (0, -92, -8), 6, 4, 7)
     for side in (-1, 1):
-        cheek = [(side * 24, -72, -24), (side * 45, -62, -20), (side * 59, -42, -13), (side * 65, -14, -10), (side * 65, 8, -10)]
+        cheek = [(side * 24, -72, -24), (side * 45, -62, -20), (side * 59, -42, -13), (side * 63, -14, -10), (side * 54, 12, -8)]
         for i, (start, end) in enumerate(zip(cheek[:-1], cheek[1:], strict=True)):
             bone.rod(start, end, (9, 8.5, 6, 4.4)[i], (8.5, 6.5, 4.4, 4.6)[i], 6)
         bone.rod((side * 50, -62, 14), (side * 51, -57, -16), 5, 6, 7)  # outer rim of the socket
@@ -56,7 +57,7 @@ def _face(bone: Field) -> None:
 
 def _openings(bone: Field) -> None:
     """Cut brain case, eye sockets, nose, temples and the way out to the spine."""
-    bone.cut(WORLD, (0, 14, 36), (62.5, 77.5, 55.5), 1)
+    bone.cut(WORLD, (0, 18, 40), (61.5, 73, 50), 1)
     bone.cut(WORLD, (0, -34, 48), (46, 36, 31), 1)
     bone.cut(WORLD, (0, 46, 9), (47.5, 41.5, 35), 1)
     bone.cut(WORLD, (0, 34, -40), (15, 18, 24), 3)
@@ -89,7 +90,7 @@ def _jaw(jaw: Field) -> None:
         jaw.rod((side * 48, -6, -64), (side * 53, 3, -22), 7.5, 4.5, 8)
         jaw.rod((side * 48, -14, -58), (side * 52, -20, -22), 6, 3, 8)
         jaw.rod((side * 48, -8, -52), (side * 51, -10, -38), 7, 6, 8)
-        jaw.rod((side * 49, 4, -19), (side * 55, 4, -19), 4.4, 4.4, 4)
+        jaw.rod((side * 48, 4, -21), (side * 53, 4, -21), 4.2, 4.2, 4)
 
 
 def _teeth(canvas: Canvas) -> None:
