@@ -60,6 +60,10 @@ def read_meta(task: Task) -> Reading:
 def read_minc(task: Task) -> Reading:
     """Read MINC, whose world is RAS by definition (x to the right, y to the front, z up)."""
     reading = _read(task, None)
+    # ITK hands MINC's coordinates on as they are, although its own world is LPS.
+    flip = np.array([-1.0, -1.0, 1.0])
+    reading.axes = flip[:, None] * reading.axes
+    reading.origin = None if reading.origin is None else flip * reading.origin
     reading.orientation_known = True
     return reading
 

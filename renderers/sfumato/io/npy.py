@@ -27,7 +27,7 @@ def read(task: Task) -> Reading:
 
 
 def _damaged(task: Task, error: Exception) -> Exception:
-    if "allow_pickle" in str(error) or "pickle" in str(error).lower():
+    if any(word in str(error) for word in ("pickle", "Python objects")):
         return task.error("it holds Python objects, which are never loaded", "save a plain numeric array")
     return task.error(f"it is not a readable NumPy file ({str(error)[:120]})", "save it again")
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -29,13 +31,38 @@ def read(task: Task) -> Reading:
     tifffile = need("tifffile", task)
     file = tifffile.TiffFile(task.path)
     try:
-        reading = _reading(file, task)
+        with _complaints() as complaints:
+            reading = _reading(file, task)
+        if complaints:  # tifffile goes on with the pages before the fault
+            raise task.error(
+                f"its directory of pages is damaged after {len(file.pages)}", "copy or export it again"
+            )
     except BaseException:
         file.close()
         raise
     source = reading.source
     reading.source = Source(source.shape, source.dtype, source.read, file.close)
     return reading
+
+
+@contextmanager
+def _complaints() -> Iterator[list[str]]:
+    """Collect what tifffile logs as errors."""
+    found: list[str] = []
+    logger = logging.getLogger("tifffile")
+
+    def keep(record: logging.LogRecord) -> bool:
+        if record.levelno >= logging.ERROR:
+            found.append(record.getMessage())
+        return False
+
+    before, logger.disabled = logger.disabled, False
+    logger.filters.insert(0, keep)
+    try:
+        yield found
+    finally:
+        logger.filters.remove(keep)
+        logger.disabled = before
 
 
 def _reading(file: Any, task: Task) -> Reading:

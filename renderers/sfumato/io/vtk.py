@@ -62,13 +62,11 @@ def _legacy_reader(head: bytes, task: Task) -> Any:
 
 
 def _run(reader: Any, task: Task) -> Any:
-    failures: list[str] = []
     core = need("vtkmodules.vtkCommonCore", task)
-    # Errors arrive as events; a reader inside the reader would print them instead.
-    display = core.vtkObject.GetGlobalWarningDisplay()
-    core.vtkObject.GlobalWarningDisplayOff()
+    # Errors of a reader inside the reader send no events: they are only written, so that is where we listen.
+    before, window = core.vtkOutputWindow.GetInstance(), core.vtkStringOutputWindow()
+    core.vtkOutputWindow.SetInstance(window)
     try:
-        reader.AddObserver("ErrorEvent", lambda *_: failures.append("damaged"))
         reader.SetFileName(str(task.path))
         task.step(0.0, "Reading")
         if reader.IsA("vtkXMLReader"):
@@ -77,10 +75,10 @@ def _run(reader: Any, task: Task) -> Any:
         reader.AddObserver("ProgressEvent", lambda *_: _progress(reader, task))
         reader.Update()
     finally:
-        core.vtkObject.SetGlobalWarningDisplay(display)
+        core.vtkOutputWindow.SetInstance(before)
     task.step(0.0, "Reading")
     grid = reader.GetOutput()
-    if failures or grid is None or grid.GetNumberOfPoints() == 0:
+    if "ERROR" in window.GetOutput().upper() or grid is None or grid.GetNumberOfPoints() == 0:
         raise task.error("VTK cannot read its data", "it is truncated or damaged: copy or export it again")
     return grid
 

@@ -26,9 +26,9 @@ def write_slice() -> Writer:
 
 
 def _write_slice(
-    path: Path, pixels: np.ndarray, position: np.ndarray, *, orientation: tuple[float, ...] = (1, 0, 0, 0, 1, 0),
-    spacing: tuple[float, float] = (0.7, 0.5), series: str = "1.2.3.4", number: int = 1, syntax: str = ExplicitVRLittleEndian,
-    **more: object,
+    path: Path, pixels: np.ndarray, position: np.ndarray, *,
+    orientation: tuple[float, ...] = (1, 0, 0, 0, 1, 0), spacing: tuple[float, float] = (0.7, 0.5),
+    series: str = "1.2.3.4", number: int = 1, syntax: str = ExplicitVRLittleEndian, **more: object,
 ) -> Path:  # fmt: skip
     meta = FileMetaDataset()
     meta.MediaStorageSOPClassUID = CTImageStorage
@@ -60,7 +60,7 @@ def _write_slice(
 
 @pytest.fixture
 def write_series(tmp_path: Path) -> Writer:
-    """Write planes (z, y, x) of stored values at given positions, in shuffled order of names; return the folder."""
+    """Write planes (z, y, x) of stored values at given positions, names shuffled; return the folder."""
 
     def write(planes: np.ndarray, positions: np.ndarray, *, folder: str = "series", **more: object) -> Path:
         target = tmp_path / folder

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -53,7 +54,7 @@ def test_geometry_agrees_with_highdicom(write_series) -> None:
     for index in ((0, 0, 0), (3, 2, 5), (7, 9, 11)):
         ours = axes @ index[::-1] + volume.origin
         found = theirs.map_reference_to_indices(ours[None])[0]
-        place = tuple(int(round(c)) for c in found)
+        place = tuple(round(float(c)) for c in found)
         np.testing.assert_allclose(found, place, atol=1e-3)
         assert theirs.array[place] == volume.data[index]
 
@@ -207,7 +208,8 @@ def test_enhanced_multiframe(write_slice, tmp_path: Path) -> None:
     shared.PixelMeasuresSequence, shared.PlaneOrientationSequence = Sequence([measures]), Sequence([turn])
     shared.PixelValueTransformationSequence = Sequence([value])
     path = write_slice(
-        tmp_path / "enhanced", planes[0], positions[0], NumberOfFrames=5, PixelData=planes[order].astype("<u2").tobytes(),
+        tmp_path / "enhanced", planes[0], positions[0], NumberOfFrames=5,
+        PixelData=planes[order].astype("<u2").tobytes(),
         SharedFunctionalGroupsSequence=Sequence([shared]), PerFrameFunctionalGroupsSequence=Sequence(groups),
     )  # fmt: skip
     volume = load(path)
@@ -248,3 +250,33 @@ def test_cancel_and_progress(write_series) -> None:
     assert told[-1] == 1.0
     with pytest.raises(LoadCancelled):
         load(folder, cancel=lambda: len(told) > 0)
+
+
+def test_without_preamble(write_series) -> None:
+    planes, positions = stack()
+    folder = write_series(planes, positions)
+    for path in folder.iterdir():
+        data = dcmread(path)
+        data.file_meta = None
+        data.save_as(path, implicit_vr=True, little_endian=True)
+        assert path.read_bytes()[128:132] != b"DICM"
+    np.testing.assert_array_equal(load(folder).data, planes.astype(np.int16) - 1024)
+
+
+@pytest.mark.real_data
+@pytest.mark.parametrize("syntax", ["", "_RLE", "_bigendian", "_jp2klossless", "_jpeg_ls_lossless"])
+def test_signed_values_in_every_syntax(data_dir: Path, tmp_path: Path, syntax: str) -> None:
+    folder = data_dir / "dicom_multiframe_and_syntaxes"
+    expected = dcmread(folder / "MR_small.dcm").pixel_array
+    for k in range(2):
+        data = dcmread(folder / f"MR_small{syntax}.dcm")
+        data.ImagePositionPatient = [0, 0, k]
+        data.save_as(tmp_path / f"{k}.dcm")
+    np.testing.assert_array_equal(load(tmp_path).data, [expected, expected])
+
+
+def test_missing_package_is_named(write_series, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = write_series(*stack())
+    monkeypatch.setitem(sys.modules, "pydicom", None)
+    with pytest.raises(LoadError, match=r"needs pydicom; .*sfumato\[io\]"):
+        load(folder)

@@ -38,9 +38,12 @@ SETS = {
     "us_phantom_kretz": "us_scanconverted_0.3mm.nrrd",
 }
 MODALITIES = {
-    "cranium_invesalius": "CT", "ct_torso_totalseg": "CT", "dicom_ct_body_j2k": "CT", "dicom_mr_t1_pddl": "MR",
+    "cranium_invesalius": "CT",
+    "ct_torso_totalseg": "CT",
+    "dicom_ct_body_j2k": "CT",
+    "dicom_mr_t1_pddl": "MR",
     "dicom_multiframe_and_syntaxes": "MR",
-}  # fmt: skip
+}
 
 
 def verified(data_dir: Path, name: str) -> dict[str, Any]:
@@ -124,7 +127,7 @@ def test_many_series_in_a_folder(data_dir: Path) -> None:
 
 
 def test_dicom_agrees_with_simpleitk(data_dir: Path) -> None:
-    import SimpleITK as sitk
+    import SimpleITK as sitk  # noqa: N813  (its own documentation does so)
 
     folder = str(data_dir / "dicom_mr_t1_pddl")
     reader = sitk.ImageSeriesReader()
