@@ -108,7 +108,7 @@ class Camera:
     @staticmethod
     def fit(
         bounds: np.ndarray,
-        view: str = "front",
+        view: str | tuple[Vec3, Vec3] = "front",
         *,
         aspect: float = 1.0,
         fill: float = 0.82,
@@ -121,14 +121,14 @@ class Camera:
         ----------
         bounds : ndarray, shape (2, 3) or (n, 3)
             Points in world space, mm: opposite corners of an axis-aligned box, or any points.
-        view : str
-            A name in `STANDARD_VIEWS`.
+        view : str or (side, up)
+            A name in `STANDARD_VIEWS`, or two orthogonal unit vectors as they stand there.
         fill : float
             Fraction of the picture that the box's projection spans in the tighter direction.
         """
-        if view not in STANDARD_VIEWS:
+        if isinstance(view, str) and view not in STANDARD_VIEWS:
             raise SceneError("camera", view, "one of " + ", ".join(STANDARD_VIEWS))
-        side, up = STANDARD_VIEWS[view]
+        side, up = STANDARD_VIEWS[view] if isinstance(view, str) else view
         points = np.asarray(bounds, dtype=float)
         if points.shape == (2, 3):
             points = np.array([[points[i, 0], points[j, 1], points[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

@@ -28,6 +28,9 @@ MAX_LIGHTS = 4
 class TechniqueParams:
     """Base of every technique's own parameters; a technique without any uses a bare subclass."""
 
+    def __post_init__(self) -> None:
+        check(self)
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -93,10 +96,12 @@ class Scene:
             self._fill_in_defaults(self.volume)
 
     def _fill_in_defaults(self, volume: Volume) -> None:
-        from .presets import suggest_transfer, suggest_view
+        from .presets import suggest_clip, suggest_transfer, suggest_view
 
         if self.transfer is None:
             object.__setattr__(self, "transfer", suggest_transfer(volume))
+            if not self.clip:
+                object.__setattr__(self, "clip", suggest_clip(volume))
         if self.camera is None:
             object.__setattr__(self, "camera", suggest_view(volume, self.transfer))
 

@@ -1,0 +1,67 @@
+"""Transfer function presets, and what the first picture of a volume looks like.
+
+CT in Hounsfield units has presets in Hounsfield units (`hounsfield`), also where a reader could not tell
+that it is CT; everything else has presets relative to its own histogram (`relative`). `view` places the
+camera before what is visible, `table` cuts the scanner's table away.
+"""
+
+from __future__ import annotations
+
+from ...errors import SceneError
+from ..transfer import TransferFunction
+from ..volume import Volume
+from .hounsfield import hounsfield_presets
+from .preset import Preset
+from .relative import mr_presets, plain_presets, ultrasound_presets
+from .table import suggest_clip
+from .values import hounsfield_zero, levels, remembered, thinned
+from .view import suggest_view
+
+__all__ = ["Preset", "preset", "presets_for", "suggest_clip", "suggest_transfer", "suggest_view"]
+
+
+@remembered
+def presets_for(volume: Volume) -> tuple[Preset, ...]:
+    """Return all presets that suit a volume, the best first."""
+    zero = hounsfield_zero(volume)
+    if zero is not None:
+        return _by_content(hounsfield_presets(zero), volume, zero)
+    parts = levels(volume)
+    modality = volume.info.modality.upper()
+    own = {"MR": mr_presets, "US": ultrasound_presets}.get(modality)
+    return (
+        (*own(parts), *plain_presets(parts))
+        if own
+        else (*plain_presets(parts), *mr_presets(parts), *ultrasound_presets(parts))
+    )
+
+
+def _by_content(presets: tuple[Preset, ...], volume: Volume, zero: float) -> tuple[Preset, ...]:
+    """Put first what there is enough of: bone, else soft tissue, else whatever is solid."""
+    values = thinned(volume)
+    solid = max(1, int((values > zero - 200).sum()))
+    first = "Bone"
+    if float((values > zero + 250).sum()) / solid < 0.01:
+        first = "Muscle" if float((values > zero).sum()) / solid > 0.2 else "Skin"
+    return tuple(sorted(presets, key=lambda p: p.name != first))
+
+
+def preset(name: str, volume: Volume) -> Preset:
+    """Return a preset by its name, upper or lower case.
+
+    Raises
+    ------
+    SceneError
+        If there is no such preset for this volume; the message lists the names.
+    """
+    for candidate in presets_for(volume):
+        if candidate.name.lower() == name.strip().lower():
+            return candidate
+    raise SceneError(
+        "transfer", name, "presets for this volume: " + ", ".join(p.name for p in presets_for(volume))
+    )
+
+
+def suggest_transfer(volume: Volume) -> TransferFunction:
+    """Return a transfer function that suits a volume's modality and values."""
+    return presets_for(volume)[0].transfer
