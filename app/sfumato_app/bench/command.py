@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import sfumato
@@ -33,7 +33,8 @@ def main(argv: Sequence[str]) -> int:
     Returns
     -------
     int
-        Exit status: 0 done, whether goals were met or not; 1 no device or a file that cannot be written; 2 wrong usage.
+        Exit status: 0 done, whether goals were met or not; 1 no device, or a file that cannot be written;
+        2 wrong usage.
     """
     try:
         options = _parser().parse_args(list(argv))
@@ -86,25 +87,30 @@ def measure(chosen: Sequence[Row], rounds: int, talkative: bool = False) -> Repo
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="sfumato bench",
-        description="Measure how long a frame takes, ours and our peers' where installed, in interleaved runs.",
+        description="Measure how long a frame takes, ours and our peers', in interleaved runs.",
     )
-    whole = _whole_number
-    parser.add_argument("--rounds", type=whole(1, 1000), help=f"turns of each contender (default {DEFAULTS['rounds']})")
-    parser.add_argument("--size", type=whole(16, 1024), help=f"voxels along a side (default {DEFAULTS['size']})")
-    parser.add_argument("--viewport", type=whole(16, 4096), help=f"pixels along a side (default {DEFAULTS['viewport']})")
+    numbers = {
+        "rounds": (_whole_number(1, 1000), "turns of each contender"),
+        "size": (_whole_number(16, 1024), "voxels along a side"),
+        "viewport": (_whole_number(16, 4096), "pixels along a side"),
+    }
+    for name, (kind, meaning) in numbers.items():
+        text = f"{meaning} (default {DEFAULTS[name]}, quick {QUICK[name]})"
+        parser.add_argument(f"--{name}", type=kind, metavar="N", help=text)
+    ids = ", ".join(row.id for row in rows(Setting()))
     parser.add_argument("--quick", action="store_true", help="a smaller task and fewer rounds")
-    parser.add_argument("--only", metavar="ID,...", help="only these rows: " + ", ".join(row.id for row in rows(Setting())))
+    parser.add_argument("--only", metavar="ID,...", help=f"only these rows: {ids}")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all measurements")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the medians (needs matplotlib)")
     parser.add_argument("--pictures", type=Path, metavar="DIR", help="write what each row drew")
     return parser
 
 
-def _whole_number(low: int, high: int):  # type: ignore[no-untyped-def]  # argparse names the type in its errors
+def _whole_number(low: int, high: int) -> Callable[[str], int]:
     def number(text: str) -> int:
-        value = int(text)
+        value = int(text) if text.isdecimal() else -1
         if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"{value} is not within {low} to {high}")
+            raise argparse.ArgumentTypeError(f"{text}: a whole number from {low} to {high} is needed")
         return value
 
     return number

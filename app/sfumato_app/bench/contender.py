@@ -8,14 +8,14 @@ import numpy as np
 
 
 class Contender(Protocol):
-    """Draws one setting in one way; everything that only happens once is done when it is made or warmed up."""
+    """Draws one setting in one way; what happens once is done when it is made or warmed up."""
 
     def draw(self) -> None:
         """Draw one frame of full quality and wait until it is finished."""
         ...
 
     def light(self) -> np.ndarray:
-        """Return the last frame in linear light, float32 in [0, 1], shape (height, width, 3), row 0 on top."""
+        """Draw once more and return linear light, float32 in [0, 1], shape (height, width, 3), top row first."""
         ...
 
 

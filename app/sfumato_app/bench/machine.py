@@ -19,7 +19,7 @@ def is_software(device: str) -> bool:
 
 
 def describe(device: str, version: str) -> dict[str, Any]:
-    """Return processor, cores, load, graphics device and versions; taken at the start, before any load of ours.
+    """Return processor, cores, load average, graphics device and versions; to be asked before the start.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Interleaved measurement: in every round each contender has its turn, so that what disturbs one disturbs all.
+"""Interleaved measurement: each contender has its turn in every round; what disturbs one disturbs all.
 
 CPU time is that of all threads of this process: a software renderer's workers and VTK's are among them.
 """
@@ -16,7 +16,7 @@ import numpy as np
 from .contender import Contender, Unavailable
 from .rows import Row, Stage
 
-#: A turn lasts at least this long, by as many frames as that takes: a fast GPU's frames are shorter than clocks are fine.
+#: A turn lasts at least this long, by as many frames as that takes: clocks are too coarse for a GPU's frames.
 TURN_SECONDS = 0.1
 MAX_FRAMES = 50
 
@@ -60,23 +60,29 @@ class Spread:
         return Spread(median, q1, q3)
 
 
-def warm_up(rows: Sequence[Row], stage: Stage, tell: Callable[[str], None]) -> list[tuple[Result, Contender | None]]:
-    """Make all contenders and let each draw, so that shaders are compiled and volumes uploaded; keep their pictures."""
+def warm_up(
+    rows: Sequence[Row], stage: Stage, tell: Callable[[str], None]
+) -> list[tuple[Result, Contender | None]]:
+    """Make all contenders and let each draw: shaders are compiled, volumes uploaded, pictures kept."""
     lineup: list[tuple[Result, Contender | None]] = []
     for row in rows:
         result, contender = Result(row), None
         try:
             tell(f"warming up {row.id}")
             contender = row.make(stage, row.setting)
-            contender.draw()
-            started = time.perf_counter()
             result.picture = contender.light()
-            seconds = time.perf_counter() - started
-            result.frames = max(1, min(MAX_FRAMES, math.ceil(TURN_SECONDS / max(seconds, 1e-6))))
+            result.frames = _frames_a_turn(contender)
         except Unavailable as reason:
             result.missing = str(reason)
         lineup.append((result, contender))
     return lineup
+
+
+def _frames_a_turn(contender: Contender) -> int:
+    started = time.perf_counter()
+    contender.draw()
+    seconds = time.perf_counter() - started
+    return max(1, min(MAX_FRAMES, math.ceil(TURN_SECONDS / max(seconds, 1e-6))))
 
 
 def run(lineup: Sequence[tuple[Result, Contender | None]], rounds: int, tell: Callable[[str], None]) -> None:

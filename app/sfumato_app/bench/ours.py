@@ -31,7 +31,7 @@ class Ours:
             raise Unavailable(str(error)) from None
 
     def draw(self) -> None:
-        """Draw one frame, the first of a new picture: its jitter, and with it the work, is always the same."""
+        """Draw the first frame of a new picture: its jitter, and with it the work, is always the same."""
         accumulation = self._renderer.begin(self.next_scene(), self._size)
         try:
             for _ in accumulation.add_frame():

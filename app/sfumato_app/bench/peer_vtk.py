@@ -20,22 +20,22 @@ from .setting import Setting
 
 
 class VtkStage:
-    """One window, renderer and light, shared by all VTK's contenders of a setting; one volume shows at a time."""
+    """Window, renderer and light of all VTK's contenders of a setting; one volume shows at a time."""
 
     def __init__(self, setting: Setting) -> None:
         try:
-            import vtkmodules.vtkRenderingOpenGL2 as opengl
+            import vtkmodules.vtkRenderingOpenGL2 as opengl  # noqa: N813
             import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401 - registers the mappers
-            from vtkmodules import vtkRenderingCore as core
+            from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
         except ImportError as error:
             raise Unavailable(f"VTK is not installed ({error})") from None
         self.scene = setting.scene("raycast-phong")
-        # Without asking for EGL by name VTK tries for an X server first, and complains aloud where there is none.
-        self.window = getattr(opengl, "vtkEGLRenderWindow", core.vtkRenderWindow)()
+        # Not asked for EGL by name, VTK tries for an X server first, and complains where there is none.
+        self.window = getattr(opengl, "vtkEGLRenderWindow", vtkRenderWindow)()
         self.window.SetOffScreenRendering(1)
         self.window.SetMultiSamples(0)
         self.window.SetSize(*setting.picture_size)
-        self.renderer = core.vtkRenderer()
+        self.renderer = vtkRenderer()
         self.renderer.SetBackground(0, 0, 0)
         self.window.AddRenderer(self.renderer)
         _set_camera(self.renderer.GetActiveCamera(), self.scene)
@@ -86,7 +86,7 @@ class VtkStage:
         grab.ShouldRerenderOff()
         grab.Update()
         width, height, _ = grab.GetOutput().GetDimensions()
-        flat = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())
+        flat = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())  # type: ignore[no-untyped-call]
         return np.asarray(flat.reshape(height, width, -1)[::-1, :, :3])
 
 
@@ -117,7 +117,7 @@ def gpu_mapper() -> Any:
 
 
 def gpu_shadow_mapper() -> Any:
-    """Return the same with volumetric shadows through the whole volume, and nothing shaded by the gradient."""
+    """Return the same with volumetric shadows through the whole volume and no shading by the gradient."""
     mapper = gpu_mapper()
     mapper.SetGlobalIlluminationReach(1)
     mapper.SetVolumetricScatteringBlending(2)
@@ -145,7 +145,8 @@ def _set_camera(camera: Any, scene: sfumato.Scene) -> None:
 def _add_light(renderer: Any, scene: sfumato.Scene) -> None:
     from vtkmodules.vtkRenderingCore import vtkLight
 
-    assert scene.camera is not None and scene.volume is not None
+    assert scene.camera is not None
+    assert scene.volume is not None
     center = np.asarray(scene.volume.center)
     towards = scene.lights[0].towards(scene.camera.basis(), scene.volume.center)
     light = vtkLight()
@@ -161,7 +162,8 @@ def _set_property(look: Any, scene: sfumato.Scene, shade: bool) -> None:
     from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
     from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
-    assert scene.transfer is not None and scene.volume is not None
+    assert scene.transfer is not None
+    assert scene.volume is not None
     color, opacity = vtkColorTransferFunction(), vtkPiecewiseFunction()
     for point in scene.transfer.points:
         color.AddRGBPoint(point.value, *point.color)
@@ -188,5 +190,6 @@ def _image(scene: sfumato.Scene) -> Any:
     image.SetDimensions(*volume.dims)
     image.SetSpacing(*volume.spacing)
     image.SetOrigin(*(volume.origin or (0, 0, 0)))
-    image.GetPointData().SetScalars(numpy_to_vtk(volume.data.ravel(), deep=True))
+    voxels = numpy_to_vtk(volume.data.ravel(), deep=True)  # type: ignore[no-untyped-call]
+    image.GetPointData().SetScalars(voxels)
     return image

@@ -61,7 +61,7 @@ def _tissue(x: np.ndarray, y: np.ndarray, z: np.ndarray, sharpness: np.float32) 
     """Return the noiseless values at coordinates in [-1, 1]; boundaries are a voxel wide."""
 
     def share(distance: np.ndarray) -> np.ndarray:
-        return np.clip(0.5 - distance * sharpness, 0, 1)
+        return np.asarray(np.clip(0.5 - distance * sharpness, 0, 1))
 
     values = AIR + (FLESH - AIR) * share(_body(x, y, z))
     values = values + (LUNG - values) * share(_lungs(x, y, z))
@@ -70,13 +70,15 @@ def _tissue(x: np.ndarray, y: np.ndarray, z: np.ndarray, sharpness: np.float32) 
 
 def _body(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Distance (about) to the skin: an oval trunk with rounded shoulders and waist."""
-    return (np.sqrt((x / 0.80) ** 2 + (y / 0.56) ** 2 + (z / 0.90) ** 6) - 1) * np.float32(0.56)
+    radius = np.sqrt((x / 0.80) ** 2 + (y / 0.56) ** 2 + (z / 0.90) ** 6)
+    return np.asarray((radius - 1) * np.float32(0.56))
 
 
 def _lungs(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Distance (about) to two lungs."""
     side = np.abs(x) - np.float32(0.33)
-    return (np.sqrt((side / 0.24) ** 2 + ((y + 0.02) / 0.30) ** 2 + ((z - 0.08) / 0.58) ** 2) - 1) * np.float32(0.24)
+    radius = np.sqrt((side / 0.24) ** 2 + ((y + 0.02) / 0.30) ** 2 + ((z - 0.08) / 0.58) ** 2)
+    return np.asarray((radius - 1) * np.float32(0.24))
 
 
 def _bones(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -89,7 +91,8 @@ def _bones(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     nearest = np.clip(np.rint((height + 0.62) / pitch), 0, _RIBS - 1) * pitch - np.float32(0.62)
     ribs = np.hypot(ring, (height - nearest) * np.float32(0.7)) - np.float32(0.028)
     beads = np.float32(0.02) * np.cos(z * np.float32(2 * np.pi / 0.14))  # vertebrae
-    spine = np.maximum(np.hypot(x, y - np.float32(0.36)) - np.float32(0.085) - beads, np.abs(z) - np.float32(0.84))
+    column = np.hypot(x, y - np.float32(0.36)) - np.float32(0.085) - beads
+    spine = np.maximum(column, np.abs(z) - np.float32(0.84))
     plate = np.maximum(np.abs(x) - np.float32(0.07), np.abs(y + np.float32(0.40)) - np.float32(0.03))
     breastbone = np.maximum(plate, np.abs(z - np.float32(0.02)) - np.float32(0.45))
     return np.asarray(np.minimum(np.minimum(ribs, spine), breastbone))

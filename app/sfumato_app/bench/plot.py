@@ -24,14 +24,16 @@ def save_plot(report: Report, path: Path) -> None:
     _plot_times(times, report)
     _plot_ratios(ratios, report)
     m = report.machine
-    figure.suptitle(f"{report.setting}\n{m['cpu']}, {m['cores']} cores; {m['gl_renderer']}; {m['date'][:10]}", fontsize=9)
+    where = f"{m['cpu']}, {m['cores']} cores; {m['gl_renderer']}; {m['date'][:10]}"
+    figure.suptitle(f"{report.setting}\n{where}", fontsize=9)
     figure.savefig(path, dpi=120)
 
 
 def _plot_times(axes: Any, report: Report) -> None:
     for result in report.results:
         if not result.missing:
-            _bar(axes, result.row.id, Spread.of(getattr(result, report.clock)), _PEER if result.row.peer else _OURS, "{:.0f}")
+            color = _PEER if result.row.peer else _OURS
+            _bar(axes, result.row.id, Spread.of(getattr(result, report.clock)), color, "{:.0f}")
     axes.set_xscale("log")
     axes.set_xlabel(f"{'CPU' if report.clock == 'cpu' else 'wall'} ms a frame (median, quartiles)")
     axes.invert_yaxis()

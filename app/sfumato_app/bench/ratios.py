@@ -62,7 +62,7 @@ class Outcome:
     verdict: str
 
 
-def outcomes(results: Sequence[Result], clock: str, on_gpu: bool, ratios: Sequence[Ratio] = RATIOS) -> list[Outcome]:
+def outcomes(results: Sequence[Result], clock: str, on_gpu: bool) -> list[Outcome]:
     """Return all ratios whose two rows were measured.
 
     Parameters
@@ -73,17 +73,19 @@ def outcomes(results: Sequence[Result], clock: str, on_gpu: bool, ratios: Sequen
         Whether goals that are meant for a GPU count.
     """
     by_id = {result.row.id: result for result in results if not result.missing}
-    return [_outcome(ratio, by_id, clock, on_gpu) for ratio in ratios if ratio.above in by_id and ratio.below in by_id]
+    measured = [ratio for ratio in RATIOS if ratio.above in by_id and ratio.below in by_id]
+    return [_outcome(ratio, by_id, clock, on_gpu) for ratio in measured]
 
 
 def _outcome(ratio: Ratio, by_id: Mapping[str, Result], clock: str, on_gpu: bool) -> Outcome:
     above, below = by_id[ratio.above], by_id[ratio.below]
-    spreads = {
-        name: Spread.of([a / max(b, 1e-9) for a, b in zip(getattr(above, name), getattr(below, name), strict=True)])
-        for name in ("cpu", "wall")
-    }
-    goal = ratio.goal
-    verdict = "-"
+    spreads = {"cpu": _divided(above.cpu, below.cpu), "wall": _divided(above.wall, below.wall)}
+    goal, verdict = ratio.goal, "-"
     if goal is not None and (on_gpu or not goal.gpu):
         verdict = "pass" if goal.met(spreads[clock].median) else "short"
     return Outcome(ratio, spreads["cpu"], spreads["wall"], verdict)
+
+
+def _divided(above: Sequence[float], below: Sequence[float]) -> Spread:
+    """Return the spread of the ratios of each round; a clock too coarse to tell counts as a nanosecond."""
+    return Spread.of([a / max(b, 1e-6) for a, b in zip(above, below, strict=True)])

@@ -75,7 +75,7 @@ class Report:
             f"graphics  {m['gl_renderer']}, OpenGL {m['gl_version']}",
             f"software  Python {m['python']}, {packages}",
             f"task      {self.setting}",
-            f"{self.rounds} interleaved rounds; medians [quartiles]; goals are judged by {_CLOCKS[self.clock]}",
+            f"runs      {self.rounds} interleaved rounds; medians [quartiles]; goals are for {_CLOCKS[self.clock]}",
         ]
         if self.peer_device and self.peer_device != m["gl_renderer"]:
             lines.insert(3, f"NOTE      VTK drew on another device: {self.peer_device}")
@@ -109,12 +109,13 @@ def _spread(spread: Spread, digits: int) -> str:
 
 def _ratio(outcome: Outcome) -> dict[str, Any]:
     ratio, goal = outcome.ratio, outcome.ratio.goal
+    limit = None if goal is None else {"limit": goal.limit, "at_least": goal.at_least, "gpu_only": goal.gpu}
     return {
         "id": ratio.id,
         "label": ratio.label,
         "above": ratio.above,
         "below": ratio.below,
-        "goal": None if goal is None else {"limit": goal.limit, "at_least": goal.at_least, "gpu_only": goal.gpu},
+        "goal": limit,
         "verdict": outcome.verdict,
         "cpu": asdict(outcome.cpu),
         "wall": asdict(outcome.wall),
@@ -122,7 +123,7 @@ def _ratio(outcome: Outcome) -> dict[str, Any]:
 
 
 def psnr(result: Result, results: Sequence[Result], reference: str) -> float | None:
-    """Return how far a row's picture agrees with another's, in dB on linear light; None if they cannot be compared or are one.
+    """Return how far a row's picture agrees with another's, in dB on linear light; None for the same picture.
 
     Between unlit rows this shows that volume, view and transfer function are the same; lit rows differ by
     their light, which is what they are for.
@@ -146,5 +147,6 @@ def save_pictures(results: Sequence[Result], folder: Path) -> None:
 
 def _srgb(light: np.ndarray) -> np.ndarray:
     """Encode linear light in [0, 1] as sRGB bytes (IEC 61966-2-1)."""
-    encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
-    return np.rint(encoded * 255).astype(np.uint8)
+    curve = 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055
+    encoded = np.where(light <= 0.0031308, 12.92 * light, curve)
+    return np.asarray(np.rint(encoded * 255), dtype=np.uint8)

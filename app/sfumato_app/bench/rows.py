@@ -1,4 +1,4 @@
-"""The rows of the benchmark's table: who draws what. A later technique, volume or size is one more line in `rows`."""
+"""The rows of the benchmark's table: who draws what. A later one is one more line in `rows`."""
 
 from __future__ import annotations
 
@@ -81,8 +81,8 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("slices-phong", "slices, Phong", _ours("slices-phong")),
         ("directional", "directional occlusion", _ours("directional")),
         ("multidirectional", "multidirectional occlusion", _ours("multidirectional")),
-        ("multidirectional-turning", "... its light turning every frame", _moving("multidirectional", "rotation")),
-        ("multidirectional-tilting", "... its light tilting every frame", _moving("multidirectional", "tilt")),
+        ("multidirectional-turning", "... its light turning", _moving("multidirectional", "rotation")),
+        ("multidirectional-tilting", "... its light tilting", _moving("multidirectional", "tilt")),
         ("vtk-gpu-shadows", "VTK GPU mapper, volumetric shadows", _vtk("gpu_shadow_mapper", shade=True)),
     )
     return tuple(Row(key, label, key.startswith("vtk-"), setting, make) for key, label, make in table)

@@ -12,7 +12,9 @@ from .phantom import EDGE_MM, TRANSFER, phantom
 _MIDDLE = (EDGE_MM / 2,) * 3
 #: A fixed perspective view: from the front, a little from the left and from above.
 CAMERA = sfumato.Camera(
-    position=(_MIDDLE[0] + 200.0, _MIDDLE[1] - 500.0, _MIDDLE[2] + 110.0), focal_point=_MIDDLE, view_angle=25.0
+    position=(_MIDDLE[0] + 200.0, _MIDDLE[1] - 500.0, _MIDDLE[2] + 110.0),
+    focal_point=_MIDDLE,
+    view_angle=25.0,
 )
 
 
