@@ -74,6 +74,7 @@ class Program:
         self._mesh: Any = None
         self._uniforms: dict[str, Any] = {name: self._program[name] for name in self._program}
         self._units: dict[str, int] = {}
+        self._textures: dict[str, Any] = {}
         for name, member in self._uniforms.items():
             if _is_sampler(member):
                 self._units[name] = len(self._units)
@@ -92,17 +93,22 @@ class Program:
                 member.value = value
 
     def bind(self, **textures: Any) -> None:
-        """Bind textures to samplers by name."""
-        for name, texture in textures.items():
-            if name in self._units:
-                texture.use(self._units[name])
+        """Bind textures to samplers by name; they stay, whatever other programs bind meanwhile."""
+        self._textures.update({name: texture for name, texture in textures.items() if name in self._units})
+
+    def _take_units(self) -> None:
+        # All programs share the texture units, each from the first on.
+        for name, texture in self._textures.items():
+            texture.use(self._units[name])
 
     def draw(self) -> None:
         """Draw the covering triangle."""
+        self._take_units()
         self._array.render(moderngl.TRIANGLES, vertices=3)
 
     def draw_rects(self, count: int) -> None:
         """Draw rectangles, six vertices each, placed by the vertex shader (software renderers are slow at instances)."""
+        self._take_units()
         self._array.render(moderngl.TRIANGLES, vertices=6 * count)
 
     def load_mesh(self, buffer: Any, attribute: str) -> None:
@@ -113,6 +119,7 @@ class Program:
 
     def draw_mesh(self, first: int, count: int) -> None:
         """Draw a range of the vertices of `load_mesh` as triangles."""
+        self._take_units()
         self._mesh.render(moderngl.TRIANGLES, vertices=count, first=first)
 
     def release(self) -> None:
