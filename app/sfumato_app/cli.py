@@ -88,12 +88,14 @@ def info(
 ) -> None:
     """Tell what a volume is; of a scene file or a picture of ours, its scene."""
     from .opening import is_scene, open_volume
-    from .tables import print_volume, scene_data
+    from .tables import print_series, print_volume, scene_data
 
     if is_scene(path):
         print(json.dumps(scene_data(path), indent=1))
     else:
         print_volume(path, open_volume(path, read))
+        if read.series is None and Path(path).is_dir():
+            print_series(path)
 
 
 @app.command(name="techniques")

@@ -66,6 +66,23 @@ def print_volume(path: str, volume: Volume) -> None:
     _console().print(table)
 
 
+def print_series(folder: str) -> None:
+    """Print the DICOM series in a folder, where there are several to choose from."""
+    from sfumato.io import find_series
+
+    found = find_series(folder)
+    if len(found) < 2:
+        return
+    table = Table(box=None, pad_edge=False)
+    for heading in ("--series", "what", "dims"):
+        table.add_column(heading)
+    for place, series in enumerate(found):
+        table.add_row(str(place), series.label, _numbers(series.dims))
+    console = _console()
+    console.print()
+    console.print(table)
+
+
 def scene_data(path: str) -> dict[str, Any]:
     """Return the scene in a scene file or in a picture of ours, checked, as JSON data.
 

@@ -70,3 +70,14 @@ def test_dicom_folder(run, data_dir):
     assert told["modality"] == "MR"
     assert told["dims"] == "274 x 384 x 128"
     assert told["orientation"] == "LPS"
+
+
+@pytest.mark.real_data
+def test_several_series_are_listed_and_chosen(run, data_dir):
+    folder = data_dir / "dicom_multiframe_and_syntaxes"
+    listed = rows(run("info", folder).out)
+    assert listed["1"].startswith("CT series 3")
+    told = rows(run("info", folder, "--series", 1).out)
+    assert told["modality"] == "CT"
+    assert told["dims"].startswith("512 x 512")
+    assert "series" in run("info", folder, "--series", 99).failed_with(1)
