@@ -34,7 +34,7 @@ from ..marcher import (
     visible_corners,
 )
 from ..stack import Stack, View
-from ..sweep import Lamp, Sweeper, lamp_for
+from ..sweep import Lamp, Sweeper, lamps_for
 
 #: Slabs of a batch: their light lies in the layers of one texture.
 BATCH = 64
@@ -94,6 +94,8 @@ class OcclusionPainter:
             for number, batch in enumerate(batches):
                 for _ in self._sweep_batch(plan, batch):
                     yield done / total
+                # The sweep's textures took the units: bind the march's again.
+                bind_material(program, material, frame)
                 self._bind_layers(program)
                 for _ in self.marcher.march(frame, program, batch, box, number == 0):
                     yield done / total
@@ -112,9 +114,7 @@ class OcclusionPainter:
         depths = view.coordinates(corners)[:, 2]
         lights = frame.scene.active_lights
         angles = tuple((0.0, 0.0) if self.headlamp else a for a in frame.scene.light_angles())
-        lamps = tuple(
-            lamp_for(frame, stack, corners, a, light.aperture) for a, light in zip(angles, lights, strict=True)
-        )
+        lamps = lamps_for(frame, material, stack, angles, [light.aperture for light in lights])
         return Plan(material, stack, stack.slabs_of(depths.min(), depths.max()), lamps, angles, box)
 
     def _prepare(self, frame: Frame, plan: Plan) -> Program:
@@ -147,10 +147,10 @@ class OcclusionPainter:
         if self._layers is None or self._layers.size != wanted:
             if self._layers is not None:
                 self._layers.release()
-            self._layers = self.device.ctx.texture_array(wanted, 1, dtype="nu2")
+            with self.device.checked(f"{math.prod(wanted) * 2 >> 20} MiB for the light's layers"):
+                self._layers = self.device.ctx.texture_array(wanted, 1, dtype="nu2")
             self._layers.filter = (moderngl.LINEAR, moderngl.LINEAR)
             self._layers.repeat_x = self._layers.repeat_y = False
-            self.device.check(f"{math.prod(wanted) * 2 >> 20} MiB for the light's layers")
 
     def _slab_texture(self, cones: tuple[tuple[float, float], ...], secant: float) -> Any:
         key = (cones, secant)
@@ -165,8 +165,8 @@ class OcclusionPainter:
         return self._slab_term[1]
 
     def _bind_layers(self, program: Program) -> None:
-        if self._layers is not None:
-            program.bind(u_layers=self._layers)
+        if self._layers is not None and self._slab_term is not None:
+            program.bind(u_layers=self._layers, u_slab_term=self._slab_term[1])
 
     def _sweep_rear(self, plan: Plan) -> Iterator[int]:
         """Take the lights from behind through all slabs, keeping their state at the batches' far edges."""
