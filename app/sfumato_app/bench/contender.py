@@ -15,7 +15,7 @@ class Contender(Protocol):
         ...
 
     def light(self) -> np.ndarray:
-        """Draw once more and return linear light, float32 in [0, 1], shape (height, width, 3), top row first."""
+        """Draw a frame and return linear light, float32 in [0, 1], shape (height, width, 3), row 0 on top."""
         ...
 
 

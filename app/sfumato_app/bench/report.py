@@ -75,7 +75,7 @@ class Report:
             f"graphics  {m['gl_renderer']}, OpenGL {m['gl_version']}",
             f"software  Python {m['python']}, {packages}",
             f"task      {self.setting}",
-            f"runs      {self.rounds} interleaved rounds; medians [quartiles]; goals are for {_CLOCKS[self.clock]}",
+            f"runs      {self.rounds} interleaved rounds; median [quartiles]; goals: {_CLOCKS[self.clock]}",
         ]
         if self.peer_device and self.peer_device != m["gl_renderer"]:
             lines.insert(3, f"NOTE      VTK drew on another device: {self.peer_device}")
