@@ -11,6 +11,7 @@ with edges as soft as a scanner's.
 from __future__ import annotations
 
 import numpy as np
+
 import sfumato
 
 from .cache import cached
@@ -44,7 +45,10 @@ def load(name: str = DEFAULT) -> sfumato.Volume:
     """
     item = entry(name)
     info = sfumato.VolumeInfo(
-        path=f"sample:{name}", modality=item.modality, orientation_known=item.orientation_known, name=item.title
+        path=f"sample:{name}",
+        modality=item.modality,
+        orientation_known=item.orientation_known,
+        name=item.title,
     )
     return sfumato.Volume(cached(item), spacing=item.spacing, info=info)
 

@@ -1,4 +1,4 @@
-"""``python -m sfumato_samples``: make every sample, say how long it took; with ``--write``, renew checksums.json."""
+"""``python -m sfumato_samples``: make every sample, tell its time; with ``--write``, renew checksums.json."""
 
 from __future__ import annotations
 
@@ -19,8 +19,12 @@ def main() -> int:
         data = item.generate()
         seconds = time.perf_counter() - start
         made[item.name] = checksum(data)
-        state = "as in the catalogue" if made[item.name] == known.get(item.name) else "differs from the catalogue"
-        print(f"{item.name:14} {seconds:5.2f} s  {data.shape} {data.dtype} {data.min()} .. {data.max()}  {state}")
+        state = (
+            "as in the catalogue" if made[item.name] == known.get(item.name) else "differs from the catalogue"
+        )
+        print(
+            f"{item.name:14} {seconds:5.2f} s  {data.shape} {data.dtype} {data.min()} .. {data.max()}  {state}"
+        )
     if "--write" in sys.argv[1:]:
         CHECKSUMS.write_text(json.dumps(made, indent=1) + "\n", encoding="utf-8")
         return 0

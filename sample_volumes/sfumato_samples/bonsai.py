@@ -14,7 +14,9 @@ from .noise import smooth_noise
 
 GRID = Grid(low=(-68.0, -60.0, -6.0), dims=(136, 120, 136), spacing=1.0)
 AIR, POT, WOOD, LEAVES = 70.0, 0.0, 105.0, 255.0
-TRUNK = np.array([(6, 0, 22), (14, -2, 34), (12, 2, 46), (-2, 4, 56), (-10, 2, 68), (-4, -2, 80), (6, -2, 92), (8, 0, 104)])
+TRUNK = np.array(
+    [(6, 0, 22), (14, -2, 34), (12, 2, 46), (-2, 4, 56), (-10, 2, 68), (-4, -2, 80), (6, -2, 92), (8, 0, 104)]
+)
 #: Where a branch leaves the trunk (row of TRUNK), where it ends, half axes of its clump of leaves.
 BRANCHES = (
     (2, (48, -6, 58), (19, 17, 9)),
@@ -80,8 +82,16 @@ def _pot(canvas: Canvas) -> None:
         return sdf.smooth_max(side, np.abs(z - np.float32(10)) - np.float32(11), 3)
 
     canvas.paint(POT, bowl, (-60, -50, -4), (60, 50, 26))
-    canvas.paint(POT, lambda a: sdf.smooth_max(np.abs((sdf.length(a[0] / 49, a[1] / 37) - 1) * np.float32(37)) - np.float32(2.5),
-                                               np.abs(a[2] - np.float32(20)) - np.float32(2), 2), (-62, -52, 14), (62, 52, 26))
+    canvas.paint(
+        POT,
+        lambda a: sdf.smooth_max(
+            np.abs((sdf.length(a[0] / 49, a[1] / 37) - 1) * np.float32(37)) - np.float32(2.5),
+            np.abs(a[2] - np.float32(20)) - np.float32(2),
+            2,
+        ),
+        (-62, -52, 14),
+        (62, 52, 26),
+    )
     for x in (-1, 1):
         for y in (-1, 1):
             canvas.box(POT, (x * 26, y * 18, -2.5), (6, 5, 2.5), 1)

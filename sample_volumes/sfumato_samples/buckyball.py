@@ -1,6 +1,6 @@
 """A bucky ball of balls and rods in a box that is open to the front: many thin occluders, one plain receiver.
 
-The box lies at 0 and the ball at 200, on either side of the air (60), so that each keeps its colour to the edge.
+The box lies at 0 and the ball at 200, on either side of the air (60): each keeps its colour to the edge.
 """
 
 from __future__ import annotations

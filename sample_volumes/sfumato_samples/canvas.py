@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from . import sdf
-from .grid import Axes, Grid
+from .grid import Axes, Grid, Point
 from .noise import grain
 
-Point = Sequence[float]
 Body = Callable[[Axes], np.ndarray]
+
+
+def _deeper(body: Body, depth: float, axes: Axes) -> np.ndarray:
+    return body(axes) + np.float32(depth)
 
 
 class Canvas:
@@ -39,21 +43,41 @@ class Canvas:
         share = sdf.inside(body(axes), self.edge)
         self.values[window] += share * (np.float32(value) - self.values[window])
 
+    def layers(self, depths: dict[float, float], body: Body, low: Point, high: Point) -> None:
+        """Paint a body and, inside it, what lies deeper than each depth (mm): its value."""
+        for depth, value in depths.items():
+            self.paint(value, partial(_deeper, body, depth), low, high)
+
     def everywhere(self, value: float, body: Body) -> None:
         """Paint a body that may fill the whole volume."""
         self.paint(value, body, (-1e4, -1e4, -1e4), (1e4, 1e4, 1e4))
 
     def ball(self, value: float, center: Point, radius: float) -> None:
         """Paint a ball."""
-        self.paint(value, lambda a: sdf.sphere(a, center, radius), np.subtract(center, radius), np.add(center, radius))
+        self.paint(
+            value,
+            lambda a: sdf.sphere(a, center, radius),
+            np.subtract(center, radius),
+            np.add(center, radius),
+        )
 
     def ellipsoid(self, value: float, center: Point, radii: Point) -> None:
         """Paint an ellipsoid along the axes."""
-        self.paint(value, lambda a: sdf.ellipsoid(a, center, radii), np.subtract(center, radii), np.add(center, radii))
+        self.paint(
+            value,
+            lambda a: sdf.ellipsoid(a, center, radii),
+            np.subtract(center, radii),
+            np.add(center, radii),
+        )
 
     def box(self, value: float, center: Point, half: Point, rounding: float = 0.0) -> None:
         """Paint a box along the axes."""
-        self.paint(value, lambda a: sdf.box(a, center, half, rounding), np.subtract(center, half), np.add(center, half))
+        self.paint(
+            value,
+            lambda a: sdf.box(a, center, half, rounding),
+            np.subtract(center, half),
+            np.add(center, half),
+        )
 
     def rod(self, value: float, start: Point, end: Point, radius: float, last: float | None = None) -> None:
         """Paint a rod with round ends, tapering to another radius."""
@@ -70,7 +94,9 @@ class Canvas:
         for i in range(len(points) - 1):
             ends = points[i : i + 2]
             window, axes = self.grid.window(ends.min(axis=0) - reach, ends.max(axis=0) + reach)
-            part = tuple(slice(w.start - o.start, w.stop - o.start) for w, o in zip(window, whole, strict=True))
+            part = tuple(
+                slice(w.start - o.start, w.stop - o.start) for w, o in zip(window, whole, strict=True)
+            )
             rod = sdf.capsule(axes, points[i], points[i + 1], float(radii[i]), float(radii[i + 1]))
             distance[part] = np.minimum(distance[part], rod)
         self.values[whole] += sdf.inside(distance, self.edge) * (np.float32(value) - self.values[whole])

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from sfumato import Light, LoadError
 
 Points = tuple[tuple[Any, ...], ...]
@@ -42,7 +43,8 @@ class Entry:
     dtype : str
         Type of the values.
     transfer : tuple
-        Points of a suggested transfer function (value, linear rgb, opacity[, emission]); empty: the automatic choice.
+        Points of a suggested transfer function (value, linear rgb, opacity[, emission]); empty: the automatic
+        choice.
     view : str
         A standard view; empty: the automatic choice.
     lights : tuple of Light
@@ -102,7 +104,7 @@ def entry(name: str) -> Entry:
     return ENTRIES[name]
 
 
-_HU = {"unit": "HU", "modality": "CT", "orientation_known": True}
+_HU: dict[str, Any] = {"unit": "HU", "modality": "CT", "orientation_known": True}
 
 #: Cut-away colours, linear RGB.
 _IVORY, _SKIN, _MUSCLE = (0.90, 0.82, 0.66), (0.80, 0.50, 0.38), (0.62, 0.20, 0.15)
@@ -110,88 +112,200 @@ _CLAY, _AMBER, _RED = (0.55, 0.52, 0.48), (0.95, 0.55, 0.18), (0.75, 0.12, 0.08)
 _WHITE, _BLUE, _STEEL = (0.85, 0.85, 0.85), (0.12, 0.30, 0.75), (0.55, 0.65, 0.80)
 _LEAF, _BARK = (0.16, 0.38, 0.10), (0.38, 0.22, 0.12)
 #: For scenes inside a box: a steeper key, and a soft fill from the eye.
-_INDOORS = (Light(tilt=28, aperture=24, intensity=0.8), Light(tilt=0, aperture=45, intensity=0.35, name="fill"))
+_INDOORS = (
+    Light(tilt=28, aperture=24, intensity=0.8),
+    Light(tilt=0, aperture=45, intensity=0.35, name="fill"),
+)
 
 ENTRIES: dict[str, Entry] = {
     item.name: item
     for item in (
         Entry(
-            "hand", "Hand", "CT of a raised left hand: skin, fat, muscle, tendons, 29 bones with marrow and joints",
-            (160, 120, 284), (0.8, 0.8, 0.8), **_HU,
+            "hand",
+            "Hand",
+            "CT of a raised left hand: skin, fat, muscle, tendons, 29 bones with marrow and joints",
+            (160, 120, 284),
+            (0.8, 0.8, 0.8),
+            **_HU,
         ),
         Entry(
-            "hand-splinter", "Hand with a splinter", "The hand with a splinter of metal in the ball of the thumb",
-            (160, 120, 284), (0.8, 0.8, 0.8), **_HU,
+            "hand-splinter",
+            "Hand with a splinter",
+            "The hand with a splinter of metal in the ball of the thumb",
+            (160, 120, 284),
+            (0.8, 0.8, 0.8),
+            **_HU,
             transfer=(
-                (-600, _SKIN, 0.0), (-350, _SKIN, 0.05), (-100, _MUSCLE, 0.02), (120, _MUSCLE, 0.03),
-                (240, _IVORY, 0.05), (500, _IVORY, 0.7), (1500, _IVORY, 0.9), (1800, _STEEL, 1.0), (3000, _STEEL, 1.0),
+                (-600, _SKIN, 0.0),
+                (-350, _SKIN, 0.05),
+                (-100, _MUSCLE, 0.02),
+                (120, _MUSCLE, 0.03),
+                (240, _IVORY, 0.05),
+                (500, _IVORY, 0.7),
+                (1500, _IVORY, 0.9),
+                (1800, _STEEL, 1.0),
+                (3000, _STEEL, 1.0),
             ),
         ),
         Entry(
-            "shapes", "Shapes", "Ball, ring, box and cone with layers under their surface, before a wall",
-            (128, 80, 128), (1.0, 1.0, 1.0), "label", dtype="uint8", view="front",
+            "shapes",
+            "Shapes",
+            "Ball, ring, box and cone with layers under their surface, before a wall",
+            (128, 80, 128),
+            (1.0, 1.0, 1.0),
+            "label",
+            dtype="uint8",
+            view="front",
             transfer=(
-                (15, _CLAY, 0.9), (40, _CLAY, 0.0), (65, _WHITE, 0.0), (85, _WHITE, 0.12), (115, _WHITE, 0.12),
-                (140, _AMBER, 0.18), (175, _AMBER, 0.2), (195, _RED, 0.9), (255, _RED, 1.0),
+                (15, _CLAY, 0.9),
+                (40, _CLAY, 0.0),
+                (65, _WHITE, 0.0),
+                (85, _WHITE, 0.12),
+                (115, _WHITE, 0.12),
+                (140, _AMBER, 0.18),
+                (175, _AMBER, 0.2),
+                (195, _RED, 0.9),
+                (255, _RED, 1.0),
             ),
         ),
         Entry(
-            "buckyball", "Bucky ball", "Sixty balls and ninety rods in a box that is open to the front",
-            (120, 120, 120), (1.0, 1.0, 1.0), "label", dtype="uint8", view="front",
+            "buckyball",
+            "Bucky ball",
+            "Sixty balls and ninety rods in a box that is open to the front",
+            (120, 120, 120),
+            (1.0, 1.0, 1.0),
+            "label",
+            dtype="uint8",
+            view="front",
             transfer=(
-                (15, _CLAY, 0.9), (45, _CLAY, 0.0), (90, _AMBER, 0.0), (140, _AMBER, 0.95), (200, _AMBER, 1.0),
-            ), lights=_INDOORS,
+                (15, _CLAY, 0.9),
+                (45, _CLAY, 0.0),
+                (90, _AMBER, 0.0),
+                (140, _AMBER, 0.95),
+                (200, _AMBER, 1.0),
+            ),
+            lights=_INDOORS,
         ),
         Entry(
-            "room", "Room", "White room with a red and a green wall and two blocks, open to the front",
-            (112, 112, 112), (1.0, 1.0, 1.0), "label", dtype="uint8", view="front",
+            "room",
+            "Room",
+            "White room with a red and a green wall and two blocks, open to the front",
+            (112, 112, 112),
+            (1.0, 1.0, 1.0),
+            "label",
+            dtype="uint8",
+            view="front",
             transfer=(
-                (60, (0.75, 0.05, 0.04), 0.9), (85, (0.75, 0.05, 0.04), 0.0), (128, _WHITE, 0.0), (134, _WHITE, 0.7),
-                (136, _WHITE, 0.7), (142, _WHITE, 0.0), (170, (0.08, 0.55, 0.07), 0.0), (200, (0.08, 0.55, 0.07), 0.9),
-            ), lights=_INDOORS,
+                (60, (0.75, 0.05, 0.04), 0.9),
+                (85, (0.75, 0.05, 0.04), 0.0),
+                (128, _WHITE, 0.0),
+                (134, _WHITE, 0.7),
+                (136, _WHITE, 0.7),
+                (142, _WHITE, 0.0),
+                (170, (0.08, 0.55, 0.07), 0.0),
+                (200, (0.08, 0.55, 0.07), 0.9),
+            ),
+            lights=_INDOORS,
         ),
         Entry(
-            "heart", "Heart, ultrasound", "Left ventricle, valve and atrium in a noisy ultrasound sector",
-            (120, 76, 112), (1.0, 1.0, 1.0), "echo", "US", dtype="uint8", view="front",
+            "heart",
+            "Heart, ultrasound",
+            "Left ventricle, valve and atrium in a noisy ultrasound sector",
+            (120, 76, 112),
+            (1.0, 1.0, 1.0),
+            "echo",
+            "US",
+            dtype="uint8",
+            view="front",
             transfer=(
-                (70, (0.45, 0.16, 0.07), 0.0), (110, (0.70, 0.34, 0.18), 0.35), (170, (0.88, 0.62, 0.40), 0.7),
+                (70, (0.45, 0.16, 0.07), 0.0),
+                (110, (0.70, 0.34, 0.18), 0.35),
+                (170, (0.88, 0.62, 0.40), 0.7),
                 (255, (1.0, 0.93, 0.80), 0.9),
             ),
         ),
         Entry(
-            "pipe", "Mixing pipe", "Hot and cold streams that mix between baffles, with their velocities",
-            (144, 56, 56), (1.0, 1.0, 1.0), "0.4 degC", dtype="uint8", view="front", vectors=True,
+            "pipe",
+            "Mixing pipe",
+            "Hot and cold streams that mix between baffles, with their velocities",
+            (144, 56, 56),
+            (1.0, 1.0, 1.0),
+            "0.4 degC",
+            dtype="uint8",
+            view="front",
+            vectors=True,
             transfer=(
-                (12, _CLAY, 0.9), (30, _CLAY, 0.0), (55, _BLUE, 0.0), (85, _BLUE, 0.35), (115, _BLUE, 0.25),
-                (165, (0.8, 0.75, 0.6), 0.05), (215, _AMBER, 0.3), (250, _RED, 0.6),
+                (12, _CLAY, 0.9),
+                (30, _CLAY, 0.0),
+                (55, _BLUE, 0.0),
+                (85, _BLUE, 0.35),
+                (115, _BLUE, 0.25),
+                (165, (0.8, 0.75, 0.6), 0.05),
+                (215, _AMBER, 0.3),
+                (250, _RED, 0.6),
             ),
         ),
         Entry(
-            "torso", "Torso", "CT of a chest: ribs, spine, shoulder blades, lungs with vessels, heart, aorta, liver",
-            (168, 112, 176), (2.0, 2.0, 2.0), **_HU,
+            "torso",
+            "Torso",
+            "CT of a chest: ribs, spine, shoulder blades, lungs with vessels, heart, aorta, liver",
+            (168, 112, 176),
+            (2.0, 2.0, 2.0),
+            **_HU,
             transfer=(
-                (150, _RED, 0.0), (190, _RED, 0.5), (230, _RED, 0.6), (300, _IVORY, 0.7), (600, _IVORY, 0.95),
+                (150, _RED, 0.0),
+                (190, _RED, 0.5),
+                (230, _RED, 0.6),
+                (300, _IVORY, 0.7),
+                (600, _IVORY, 0.95),
                 (1500, (1.0, 0.97, 0.9), 1.0),
             ),
         ),
         Entry(
-            "skull", "Skull", "CT of a skull with eye sockets, nose, cheek bones, lower jaw and teeth",
-            (116, 156, 144), (1.4, 1.4, 1.4), **_HU,
+            "skull",
+            "Skull",
+            "CT of a skull with eye sockets, nose, cheek bones, lower jaw and teeth",
+            (116, 156, 144),
+            (1.4, 1.4, 1.4),
+            **_HU,
             transfer=((200, _IVORY, 0.0), (480, _IVORY, 0.95), (1500, (1.0, 0.97, 0.9), 1.0)),
         ),
         Entry(
-            "bonsai", "Bonsai", "A small tree: roots, crooked trunk, branches with clumps of leaves, in a glazed pot",
-            (136, 120, 136), (1.0, 1.0, 1.0), "label", dtype="uint8", view="front",
+            "bonsai",
+            "Bonsai",
+            "A small tree: roots, crooked trunk, branches with clumps of leaves, in a glazed pot",
+            (136, 120, 136),
+            (1.0, 1.0, 1.0),
+            "label",
+            dtype="uint8",
+            view="front",
             transfer=(
-                (30, (0.10, 0.22, 0.36), 1.0), (55, (0.10, 0.22, 0.36), 0.0), (94, _BARK, 0.0), (102, _BARK, 0.9),
-                (108, _BARK, 0.9), (116, _BARK, 0.0), (120, _LEAF, 0.0), (160, _LEAF, 0.9), (255, _LEAF, 0.9),
+                (30, (0.10, 0.22, 0.36), 1.0),
+                (55, (0.10, 0.22, 0.36), 0.0),
+                (94, _BARK, 0.0),
+                (102, _BARK, 0.9),
+                (108, _BARK, 0.9),
+                (116, _BARK, 0.0),
+                (120, _LEAF, 0.0),
+                (160, _LEAF, 0.9),
+                (255, _LEAF, 0.9),
             ),
         ),
         Entry(
-            "fish", "Fish", "CT of a carp-like fish: skull, gill cover, spine with ribs and spines, fins of rays",
-            (184, 56, 96), (1.5, 1.5, 1.5), "HU", "CT", view="front",
+            "fish",
+            "Fish",
+            "CT of a carp-like fish: skull, gill cover, spine with ribs and spines, fins of rays",
+            (184, 56, 96),
+            (1.5, 1.5, 1.5),
+            "HU",
+            "CT",
+            view="front",
             transfer=(
-                (-300, _SKIN, 0.0), (-100, _SKIN, 0.015), (120, _SKIN, 0.02), (250, _IVORY, 0.3), (500, _IVORY, 0.9),
+                (-300, _SKIN, 0.0),
+                (-100, _SKIN, 0.015),
+                (120, _SKIN, 0.02),
+                (250, _IVORY, 0.3),
+                (500, _IVORY, 0.9),
                 (1500, (1.0, 0.97, 0.9), 1.0),
             ),
         ),

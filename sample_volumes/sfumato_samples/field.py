@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from .grid import Grid
+from .grid import Grid, Point
 from .sdf import Frame, capsule, ellipsoid, smooth_max, smooth_min
 
-Point = Sequence[float]
 WORLD = Frame.along((0, 0, 0), (0, 0, 1))
 
 

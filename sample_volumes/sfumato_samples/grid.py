@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+Point = Sequence[float] | np.ndarray
 Axes = tuple[np.ndarray, np.ndarray, np.ndarray]
 Box = tuple[slice, slice, slice]
 
@@ -47,7 +48,7 @@ class Grid:
         """Return x, y and z of all voxels as arrays that broadcast to the grid's shape."""
         return self.line(0)[None, None, :], self.line(1)[None, :, None], self.line(2)[:, None, None]
 
-    def window(self, low: Sequence[float], high: Sequence[float]) -> tuple[Box, Axes]:
+    def window(self, low: Point, high: Point) -> tuple[Box, Axes]:
         """Return the part of the grid inside a box: its slices (z, y, x) and its broadcasting x, y, z in mm."""
         spans = []
         for axis in range(3):
@@ -55,7 +56,11 @@ class Grid:
             stop = int(np.ceil((high[axis] - self.low[axis]) / self.spacing))
             spans.append((max(0, min(start, self.dims[axis])), max(0, min(stop, self.dims[axis]))))
         (x0, x1), (y0, y1), (z0, z1) = spans
-        lines = self.line(0, x0, x1)[None, None, :], self.line(1, y0, y1)[None, :, None], self.line(2, z0, z1)[:, None, None]
+        lines = (
+            self.line(0, x0, x1)[None, None, :],
+            self.line(1, y0, y1)[None, :, None],
+            self.line(2, z0, z1)[:, None, None],
+        )
         return (slice(z0, z1), slice(y0, y1), slice(x0, x1)), lines
 
     def coarser(self) -> Grid:

@@ -30,7 +30,7 @@ def generate() -> np.ndarray:
 
 
 def _chambers(canvas: Canvas) -> None:
-    """Paint the ventricle (apex up, to the probe), the atrium below, the valve's leaflets and the muscles that hold them."""
+    """Paint the ventricle (apex up, to the probe), the atrium below, the valve's leaflets and their muscles."""
     canvas.ellipsoid(MUSCLE, (-2, 14, -46), (37, 38, 42))
     canvas.ellipsoid(MUSCLE, (0, 14, -84), (29, 30, 22))
     canvas.ellipsoid(BLOOD, (-2, 14, -47), (24, 27, 31))
@@ -40,7 +40,9 @@ def _chambers(canvas: Canvas) -> None:
     canvas.ellipsoid(BLOOD, (40, 16, -50), (11, 24, 27))
     canvas.rod(BLOOD, (20, 22, -66), (30, 30, -88), 7)
     for side in (-1, 1):
-        leaf = np.array([(side * 15.5, 14, -73), (side * 10, 14, -67), (side * 5, 14, -62), (side * 3.5, 14, -57)])
+        leaf = np.array(
+            [(side * 15.5, 14, -73), (side * 10, 14, -67), (side * 5, 14, -62), (side * 3.5, 14, -57)]
+        )
         for depth in np.arange(-14, 17, 3.0):
             shorter = 1 - (depth / 22) ** 2
             row = leaf * (1, 1, 1) + (0, depth, 0)
@@ -78,4 +80,4 @@ def _sector() -> np.ndarray:
     edge = np.maximum(np.abs(x) - np.float32(SECTOR[0]) * reach, np.abs(y) - np.float32(SECTOR[1]) * reach)
     depth = sdf.length(x, y, reach)
     share = sdf.inside(np.maximum(edge * np.float32(0.8), np.maximum(depth - 112, 14 - depth)), 2.0)
-    return share * (np.float32(1.1) - depth * np.float32(0.0025))
+    return np.asarray(share * (np.float32(1.1) - depth * np.float32(0.0025)))

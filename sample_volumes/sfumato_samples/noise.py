@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-
 _LOW, _HIGH, _EVEN, _ODD = slice(None, -1), slice(1, None), slice(0, None, 2), slice(1, None, 2)
 
 
@@ -17,7 +16,7 @@ def grain(shape: tuple[int, int, int], seed: int) -> np.ndarray:
     words = np.random.Generator(np.random.PCG64(seed)).integers(0, 1 << 32, count, dtype=np.uint32)
     total = words.view(np.uint8).reshape(count, 4).sum(axis=1, dtype=np.uint16)
     # Each byte has mean 127.5 and variance (256^2 - 1) / 12.
-    return ((total.astype(np.float32) - 510) * np.float32(1 / 147.8)).reshape(shape)
+    return np.asarray(((total.astype(np.float32) - 510) * np.float32(1 / 147.8)).reshape(shape))
 
 
 def smooth_noise(shape: tuple[int, int, int], cell: int, seed: int) -> np.ndarray:

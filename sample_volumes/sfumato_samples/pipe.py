@@ -42,7 +42,9 @@ def _baffle(canvas: Canvas, place: float, side: int) -> None:
     low, high = (place - 3, -RADIUS, -RADIUS), (place + 3, RADIUS, RADIUS)
 
     def plate(a: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
-        disc = np.maximum(sdf.length(a[1], a[2]) - np.float32(RADIUS), np.abs(a[0] - np.float32(place)) - np.float32(1.5))
+        disc = np.maximum(
+            sdf.length(a[1], a[2]) - np.float32(RADIUS), np.abs(a[0] - np.float32(place)) - np.float32(1.5)
+        )
         return np.maximum(disc, side * a[2] - np.float32(6))
 
     canvas.paint(SOLID, plate, low, high)
@@ -55,7 +57,7 @@ def _center(x: np.ndarray) -> np.ndarray:
     saw = np.abs(phase - 2 * np.floor(phase * np.float32(0.5)) - 1) * 2 - 1
     rounded = saw * (np.float32(1.5) - np.float32(0.5) * saw * saw)
     inside = np.clip((x + 66) * np.float32(1 / 24), 0, 1) * np.clip((54 - x) * np.float32(1 / 24), 0, 1)
-    return np.float32(11) * rounded * inside
+    return np.asarray(np.float32(11) * rounded * inside)
 
 
 def _temperature() -> np.ndarray:
@@ -87,4 +89,4 @@ def vectors() -> np.ndarray:
     dy = {axis: np.gradient(field, GRID.spacing, axis=1) for axis, field in (("x", along_x), ("z", along_z))}
     dz = {axis: np.gradient(field, GRID.spacing, axis=0) for axis, field in (("x", along_x), ("y", along_y))}
     flow = np.stack([dy["z"] - dz["y"], dz["x"] - dx["z"], dx["y"] - dy["x"]], axis=-1)
-    return (flow * (square < 1)[..., None]).astype(np.float32)
+    return np.asarray((flow * (square < 1)[..., None]).astype(np.float32))

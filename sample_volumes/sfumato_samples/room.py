@@ -1,7 +1,7 @@
 """A room after Cornell's: left wall red, right wall green, the rest white, two blocks; open to the front.
 
 Between a wall's value and the air's all values in between occur, so the air lies at 110 with red below (0),
-white a little above (135) and green far above (255): only green is coated with white, by a thirtieth of a voxel.
+white a little above (135) and green far above (255): only green is coated with white, a thirtieth of a voxel.
 """
 
 from __future__ import annotations
@@ -32,11 +32,19 @@ def generate() -> np.ndarray:
 
 
 def _block(
-    canvas: Canvas, center: tuple[float, float, float], half: tuple[float, float, float], turn: tuple[float, float, float]
+    canvas: Canvas,
+    center: tuple[float, float, float],
+    half: tuple[float, float, float],
+    turn: tuple[float, float, float],
 ) -> None:
     """Paint a block, turned about the vertical."""
     # The frame's w axis lies in the floor, its v axis points up.
     frame = Frame.along(center, (turn[0], turn[2], 0), (0, 0, 1))
     size = (half[0], half[2], half[1])
     reach = max(half) * 1.5
-    canvas.paint(WHITE, lambda a: box(frame.local(a), (0, 0, 0), size), np.subtract(center, reach), np.add(center, reach))
+    canvas.paint(
+        WHITE,
+        lambda a: box(frame.local(a), (0, 0, 0), size),
+        np.subtract(center, reach),
+        np.add(center, reach),
+    )

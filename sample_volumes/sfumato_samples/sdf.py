@@ -6,20 +6,17 @@ but +, -, *, / and square roots, which are the same on every processor, so that 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from .grid import Axes
-
-Point = Sequence[float]
+from .grid import Axes, Point
 
 
 def unit(vector: Point) -> np.ndarray:
     """Return a vector of length 1."""
     array = np.asarray(vector, dtype=float)
-    return array / np.sqrt((array * array).sum())
+    return np.asarray(array / np.sqrt((array * array).sum()))
 
 
 @dataclass(frozen=True)
@@ -55,7 +52,7 @@ class Frame:
 
 def length(*parts: np.ndarray) -> np.ndarray:
     """Return the length of vectors given by their components."""
-    return np.sqrt(sum((p * p for p in parts[1:]), parts[0] * parts[0]))
+    return np.asarray(np.sqrt(sum((p * p for p in parts[1:]), parts[0] * parts[0])))
 
 
 def sphere(axes: Axes, center: Point, radius: float) -> np.ndarray:
@@ -68,18 +65,22 @@ def ellipsoid(axes: Axes, center: Point, radii: Point) -> np.ndarray:
     scaled = [(axes[i] - np.float32(center[i])) / np.float32(radii[i]) for i in range(3)]
     radius = length(*scaled)
     slope = length(*(scaled[i] / np.float32(radii[i]) for i in range(3)))
-    return radius * (radius - 1) / np.maximum(slope, np.float32(1e-6))
+    return np.asarray(radius * (radius - 1) / np.maximum(slope, np.float32(1e-6)))
 
 
-def capsule(axes: Axes, start: Point, end: Point, radius: float, end_radius: float | None = None) -> np.ndarray:
+def capsule(
+    axes: Axes, start: Point, end: Point, radius: float, end_radius: float | None = None
+) -> np.ndarray:
     """Distance to a rod with round ends; with a second radius, it tapers."""
     a, ab = np.asarray(start, dtype=float), np.subtract(end, start)
     x, y, z = (axes[i] - np.float32(a[i]) for i in range(3))
     scale = 1 / max(float((ab * ab).sum()), 1e-12)
-    t = np.clip(z * np.float32(ab[2] * scale) + y * np.float32(ab[1] * scale) + x * np.float32(ab[0] * scale), 0, 1)
+    t = np.clip(
+        z * np.float32(ab[2] * scale) + y * np.float32(ab[1] * scale) + x * np.float32(ab[0] * scale), 0, 1
+    )
     distance = length(x - t * np.float32(ab[0]), y - t * np.float32(ab[1]), z - t * np.float32(ab[2]))
     last = radius if end_radius is None else end_radius
-    return distance - (np.float32(radius) + t * np.float32(last - radius))
+    return np.asarray(distance - (np.float32(radius) + t * np.float32(last - radius)))
 
 
 def box(axes: Axes, center: Point, half: Point, rounding: float = 0.0) -> np.ndarray:
@@ -99,16 +100,18 @@ def cone(axes: Axes, center: Point, radius: float, height: float) -> np.ndarray:
     """Distance to an upright cone (never too large); `center` is that of its base."""
     x, y, z = (axes[i] - np.float32(center[i]) for i in range(3))
     slope = np.sqrt(radius * radius + height * height)
-    side = (length(x, y) * np.float32(height) + (z - np.float32(height)) * np.float32(radius)) / np.float32(slope)
+    side = (length(x, y) * np.float32(height) + (z - np.float32(height)) * np.float32(radius)) / np.float32(
+        slope
+    )
     return np.maximum(side, -z)
 
 
 def smooth_min(a: np.ndarray, b: np.ndarray, k: float) -> np.ndarray:
     """Union whose seam is a fillet of about `k` mm."""
     if k <= 0:
-        return np.minimum(a, b)
+        return np.asarray(np.minimum(a, b))
     h = np.maximum(np.float32(k) - np.abs(a - b), 0)
-    return np.minimum(a, b) - h * h * np.float32(0.25 / k)
+    return np.asarray(np.minimum(a, b) - h * h * np.float32(0.25 / k))
 
 
 def smooth_max(a: np.ndarray, b: np.ndarray, k: float) -> np.ndarray:
@@ -122,10 +125,10 @@ def inside(distance: np.ndarray, edge: float) -> np.ndarray:
     Linear, because trilinear interpolation then meets the surface exactly; a curved step two voxels wide
     gives the wood grain of terraces that are not there.
     """
-    return np.clip(np.float32(0.5) - distance * np.float32(1 / edge), 0, 1)
+    return np.asarray(np.clip(np.float32(0.5) - distance * np.float32(1 / edge), 0, 1))
 
 
 def bump(x: np.ndarray, width: float) -> np.ndarray:
     """Bell of height 1 that ends at plus and minus `width`."""
     t = np.maximum(1 - x * x * np.float32(1 / (width * width)), 0)
-    return t * t * t
+    return np.asarray(t * t * t)

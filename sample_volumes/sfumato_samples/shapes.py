@@ -1,7 +1,7 @@
-"""Four solids before a wall, each with layers under its surface: what local and directional light do with them.
+"""Four solids before a wall, each with layers under its surface, for local and directional light.
 
-Values: skin of the solids 110 (4 mm), flesh 170, core 235; the wall lies at 0, on the other side of the air (50),
-so that no solid's edge passes through the wall's colour.
+Values: skin of the solids 110 (4 mm), flesh 170, core 235; the wall lies at 0, on the other side of the
+air (50), so that no solid's edge passes through the wall's colour.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .canvas import Canvas
 from .grid import Axes, Grid
 
 GRID = Grid(low=(-64.0, -32.0, -64.0), dims=(128, 80, 128), spacing=1.0)
-AIR, WALL, LAYERS = 50, 0, ((0.0, 110), (4.0, 170), (11.0, 235))
+AIR, WALL, LAYERS = 50, 0, {0.0: 110.0, 4.0: 170.0, 11.0: 235.0}
 Solid = tuple[tuple[float, float, float], Callable[[Axes], np.ndarray]]
 
 
@@ -37,7 +37,5 @@ def generate() -> np.ndarray:
     canvas = Canvas(GRID, AIR)
     canvas.box(WALL, (0, 42, 0), (63, 3, 63), 2)
     for center, solid in SOLIDS:
-        low, high = np.subtract(center, 28), np.add(center, 28)
-        for depth, value in LAYERS:
-            canvas.paint(value, lambda a, solid=solid, depth=depth: solid(a) + np.float32(depth), low, high)
+        canvas.layers(LAYERS, solid, np.subtract(center, 28), np.add(center, 28))
     return canvas.finished(np.uint8, noise=1.5, seed=11)

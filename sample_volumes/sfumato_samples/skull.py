@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -45,8 +46,14 @@ def _face(bone: Field) -> None:
     bone.pad(WORLD, (0, -58, -30), (35, 30, 26), 12)
     bone.rod((0, -80, 10), (0, -92, -8), 6, 4, 7)
     for side in (-1, 1):
-        cheek = [(side * 24, -72, -24), (side * 45, -62, -20), (side * 59, -42, -13), (side * 63, -14, -10), (side * 54, 12, -8)]
-        for i, (start, end) in enumerate(zip(cheek[:-1], cheek[1:], strict=True)):
+        cheek = [
+            (side * 24, -72, -24),
+            (side * 45, -62, -20),
+            (side * 59, -42, -13),
+            (side * 63, -14, -10),
+            (side * 54, 12, -8),
+        ]
+        for i, (start, end) in enumerate(itertools.pairwise(cheek)):
             bone.rod(start, end, (9, 8.5, 6, 4.4)[i], (8.5, 6.5, 4.4, 4.6)[i], 6)
         bone.rod((side * 50, -62, 14), (side * 51, -57, -16), 5, 6, 7)  # outer rim of the socket
         bone.rod((side * 9, -84, 2), (side * 15, -78, -26), 5, 7, 6)
@@ -81,7 +88,7 @@ def _jaw(jaw: Field) -> None:
     rim = _arch(24.5, 43, -64)
     base = _arch(31, 43, -82, back=-44)
     for line, radius in ((rim, 5.4), (base, 5.2)):
-        for start, end in zip(line[:-1], line[1:], strict=True):
+        for start, end in itertools.pairwise(line):
             jaw.rod(start, end, radius, radius, 8)
     jaw.pad(WORLD, (0, -87, -84), (13, 7, 8), 8)
     for side in (-1, 1):

@@ -12,7 +12,9 @@ from .grid import Axes, Grid
 
 GRID = Grid(low=(-168.0, -112.0, -6.0), dims=(168, 112, 176), spacing=2.0)
 #: Height (mm), half width and half depth of the rib cage.
-CAGE = np.array([(0, 128, 84), (60, 130, 86), (140, 124, 84), (220, 102, 74), (270, 76, 60), (320, 46, 44)], dtype=float)
+CAGE = np.array(
+    [(0, 128, 84), (60, 130, 86), (140, 124, 84), (220, 102, 74), (270, 76, 60), (320, 46, 44)], dtype=float
+)
 CORTEX, SPONGY, CARTILAGE, CONTRAST = 900.0, 280.0, 330.0, 215.0
 SPINE_Y = 56.0
 
@@ -33,7 +35,14 @@ def generate() -> np.ndarray:
         for (x0, z0, r0), (x1, z1, r1) in _STERNUM:
             start, end = (x0, front + 2 - 0.06 * (280 - z0), z0), (x1, front + 2 - 0.06 * (280 - z1), z1)
             flat = sdf.Frame.along(start, np.subtract(end, start))
-            _plate(canvas, value, flat, float(np.linalg.norm(np.subtract(end, start))), (r0 - thinner, r1 - thinner), 5 - thinner)
+            _plate(
+                canvas,
+                value,
+                flat,
+                float(np.linalg.norm(np.subtract(end, start))),
+                (r0 - thinner, r1 - thinner),
+                5 - thinner,
+            )
     return canvas.finished(np.int16, noise=8, seed=21)
 
 
@@ -41,14 +50,18 @@ def generate() -> np.ndarray:
 _STERNUM = (((0, 284, 25), (0, 252, 13)), ((0, 246, 13), (0, 170, 17)), ((0, 166, 12), (0, 144, 6)))
 
 
-def _plate(canvas: Canvas, value: float, frame: sdf.Frame, span: float, widths: tuple[float, float], thick: float) -> None:
+def _plate(
+    canvas: Canvas, value: float, frame: sdf.Frame, span: float, widths: tuple[float, float], thick: float
+) -> None:
     """Paint a flat bone along a frame's w axis, its half width going from one value to another."""
     reach = max(widths) + thick
     ends = np.array([frame.origin, frame.world(0, 0, span)])
 
     def distance(a: Axes) -> np.ndarray:
         u, v, w = frame.local(a)
-        width = np.float32(widths[0]) + np.clip(w / np.float32(span), 0, 1) * np.float32(widths[1] - widths[0])
+        width = np.float32(widths[0]) + np.clip(w / np.float32(span), 0, 1) * np.float32(
+            widths[1] - widths[0]
+        )
         flat = (sdf.length(u / width, v * np.float32(1 / thick)) - 1) * np.float32(thick)
         return sdf.smooth_max(flat, np.abs(w - np.float32(span / 2)) - np.float32(span / 2), 4)
 
@@ -72,9 +85,8 @@ def _body(canvas: Canvas) -> None:
             trunk = sdf.smooth_min(trunk, sdf.capsule(a, (side * 60, 10, 284), (side * 175, 14, 248), 44), 30)
         return trunk
 
-    canvas_distance = distance(GRID.axes())
-    for depth, value in ((0, 25), (3, -95), (14, 55)):
-        canvas.everywhere(value, lambda a, depth=depth: canvas_distance + np.float32(depth))
+    body = distance(GRID.axes())
+    canvas.layers({0: 25, 3: -95, 14: 55}, lambda a: body, (-1e4, -1e4, -1e4), (1e4, 1e4, 1e4))
 
 
 def _lungs(canvas: Canvas) -> None:
@@ -105,16 +117,36 @@ def _vessels(canvas: Canvas, root: np.ndarray, side: int) -> None:
         for start, direction, radius in tips:
             end = start + sdf.unit(direction) * 17.0
             canvas.rod(40, start, end, radius * 0.55, radius * 0.42)
-            grown += [(end, sdf.unit(direction) + random.uniform(-0.75, 0.75, 3), radius * 0.72) for _ in range(2)]
+            grown += [
+                (end, sdf.unit(direction) + random.uniform(-0.75, 0.75, 3), radius * 0.72) for _ in range(2)
+            ]
         tips = grown
 
 
 def _heart(canvas: Canvas) -> None:
     """Paint heart and great vessels, filled with contrast agent."""
     frame = sdf.Frame.along((20, -26, 142), (0.55, -0.35, -0.75))
-    canvas.paint(60, lambda a: sdf.ellipsoid(frame.local(a), (0, 0, 0), (41, 38, 58)), (-60, -100, 60), (100, 50, 220))
-    canvas.paint(CONTRAST, lambda a: sdf.ellipsoid(frame.local(a), (4, -2, 4), (33, 30, 48)), (-60, -100, 60), (100, 50, 220))
-    arch = np.array([(4, -22, 176), (-8, -26, 208), (-6, -18, 236), (8, 4, 250), (20, 26, 238), (22, 36, 200), (18, 36, 100), (12, 34, -20)])
+    canvas.paint(
+        60, lambda a: sdf.ellipsoid(frame.local(a), (0, 0, 0), (41, 38, 58)), (-60, -100, 60), (100, 50, 220)
+    )
+    canvas.paint(
+        CONTRAST,
+        lambda a: sdf.ellipsoid(frame.local(a), (4, -2, 4), (33, 30, 48)),
+        (-60, -100, 60),
+        (100, 50, 220),
+    )
+    arch = np.array(
+        [
+            (4, -22, 176),
+            (-8, -26, 208),
+            (-6, -18, 236),
+            (8, 4, 250),
+            (20, 26, 238),
+            (22, 36, 200),
+            (18, 36, 100),
+            (12, 34, -20),
+        ]
+    )
     canvas.chain(CONTRAST, arch, 14, 10)
     canvas.chain(CONTRAST, np.array([(-24, -14, 150), (-26, -12, 210), (-24, -12, 262)]), 10, 8)
     canvas.chain(CONTRAST, np.array([(14, -34, 176), (16, -20, 206), (26, 4, 206)]), 12, 9)
@@ -140,12 +172,21 @@ def _rib(canvas: Canvas, side: int, number: int) -> None:
 
 def _shoulder(canvas: Canvas, side: int) -> None:
     """Paint collar bone, shoulder blade and head of the upper arm."""
-    collar = np.array([(18, -62, 290), (48, -66, 296), (84, -48, 302), (122, -14, 300), (138, 2, 294)]) * (side, 1, 1)
+    collar = np.array([(18, -62, 290), (48, -66, 296), (84, -48, 302), (122, -14, 300), (138, 2, 294)]) * (
+        side,
+        1,
+        1,
+    )
     canvas.chain(CORTEX, collar, 6, 6.5)
     blade = sdf.Frame.along((side * 92, 76, 226), (side * 0.18, -0.12, 1), (side * 0.45, 1, 0))
     low, high = np.array([side * 92 - 60, 30, 140]), np.array([side * 92 + 60, 112, 312])
     canvas.paint(CORTEX * 0.8, lambda a: sdf.ellipsoid(blade.local(a), (0, 0, 0), (34, 4.5, 62)), low, high)
-    canvas.chain(CORTEX * 0.8, np.array([(60, 88, 258), (96, 88, 274), (130, 60, 298), (142, 24, 304)]) * (side, 1, 1), 5, 7)
+    canvas.chain(
+        CORTEX * 0.8,
+        np.array([(60, 88, 258), (96, 88, 274), (130, 60, 298), (142, 24, 304)]) * (side, 1, 1),
+        5,
+        7,
+    )
     canvas.ball(CORTEX * 0.8, (side * 146, 14, 278), 22)
     canvas.ball(SPONGY, (side * 146, 14, 278), 18)
     canvas.rod(CORTEX, (side * 150, 14, 268), (side * 185, 16, 200), 13)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 import sfumato
 import sfumato_samples
 from sfumato_samples import cache, hand
@@ -107,8 +108,12 @@ def test_folder_that_cannot_be_written(tmp_path: Path, monkeypatch: pytest.Monke
 def test_cache_lies_in_the_users_cache_folder(tmp_path: Path) -> None:
     code = "from sfumato_samples import cache; print(cache.folder())"
     done = subprocess.run(
-        [sys.executable, "-c", code], env={"XDG_CACHE_HOME": str(tmp_path), "HOME": str(tmp_path)},
-        capture_output=True, text=True, check=True, timeout=60,
+        [sys.executable, "-c", code],
+        env={"XDG_CACHE_HOME": str(tmp_path), "HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
     )
     assert Path(done.stdout.strip()).is_relative_to(tmp_path)
 
@@ -116,14 +121,19 @@ def test_cache_lies_in_the_users_cache_folder(tmp_path: Path) -> None:
 # -- the hand --------------------------------------------------------------------------------------
 def _at(volume: sfumato.Volume, point: np.ndarray) -> float:
     """Mean of the 3 x 3 x 3 voxels around a point of the hand's own space."""
-    x, y, z = (int(round((point[i] - hand.GRID.low[i]) / hand.GRID.spacing - 0.5)) for i in range(3))
+    x, y, z = (round((point[i] - hand.GRID.low[i]) / hand.GRID.spacing - 0.5) for i in range(3))
     return float(volume.data[z - 1 : z + 2, y - 1 : y + 2, x - 1 : x + 2].mean())
 
 
 def test_hand_has_every_bone() -> None:
     assert len(parts()) == 19 + 8 + 2
     kinds = [bone.kind for bone in long_bones()]
-    assert {kind: kinds.count(kind) for kind in kinds} == {"metacarpal": 5, "proximal": 5, "middle": 4, "distal": 5}
+    assert {kind: kinds.count(kind) for kind in kinds} == {
+        "metacarpal": 5,
+        "proximal": 5,
+        "middle": 4,
+        "distal": 5,
+    }
 
 
 def test_hand_is_in_hounsfield_units() -> None:

@@ -1,16 +1,18 @@
 """The hand: a computed tomography of a raised left hand, made by code; the face of the program.
 
 Layers, from outside: skin, subcutaneous fat, muscle and tendons, bones with cortex, spongy ends and marrow.
-Values are Hounsfield units of textbooks (air -1000, fat -100, muscle 60, spongy bone 200-400, cortex 900-1500).
+Values are Hounsfield units of textbooks: air -1000, fat -100, muscle 60, spongy bone 200-400, cortex 900-1500.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ..grid import Axes, Grid
+from ..grid import Grid
 from ..noise import grain, smooth_noise
 from ..sdf import bump, capsule, inside
 from .bones import Skeleton, skeleton
@@ -68,7 +70,7 @@ def _soft(grid: Grid, body: np.ndarray, depth: np.ndarray) -> np.ndarray:
     inner = fat + (flesh - fat) * inside(np.maximum(muscle, 2.4 - depth), 1.6)
     tendon = _tendons(grid).ravel()[body]
     inner = inner + (np.float32(95) - inner) * inside(np.maximum(tendon, 1.6 - depth), 1.2)
-    return inner + (np.float32(32) - inner) * inside(depth - np.float32(1.4), 1.2)
+    return np.asarray(inner + (np.float32(32) - inner) * inside(depth - np.float32(1.4), 1.2))
 
 
 def _muscle(grid: Grid) -> np.ndarray:
@@ -76,10 +78,14 @@ def _muscle(grid: Grid) -> np.ndarray:
     field = grid.full(5)
     rods = [((-16, -14, 34), (-38, -33, 58), 13.0, 9.0), ((24, -10, 26), (32, -10, 76), 10.0, 7.0)]
     rods += [((-26, -16, 50), (-22, -5, 78), 8.0, 5.0)]
-    for left, right in zip(FINGERS[:-1], FINGERS[1:], strict=True):
+    for left, right in itertools.pairwise(FINGERS):
         start, end = np.add(left.base, right.base) / 2, np.add(left.head, right.head) / 2
-        rods.append((tuple(start + (0, -3, 4)), tuple(end + (0, -3, -6)), 8.0, 5.5))
-    rods += [((-9, -8, -6), (-12, -9, -50), 7.5, 12.0), ((8, -8, -6), (8, -9, -50), 8.0, 12.0), ((2, 9, -10), (0, 11, -50), 5.0, 8.0)]
+        rods.append((np.add(start, (0, -3, 4)), np.add(end, (0, -3, -6)), 8.0, 5.5))
+    rods += [
+        ((-9, -8, -6), (-12, -9, -50), 7.5, 12.0),
+        ((8, -8, -6), (8, -9, -50), 8.0, 12.0),
+        ((2, 9, -10), (0, 11, -50), 5.0, 8.0),
+    ]
     _add_rods(grid, field, rods)
     return field
 
@@ -91,7 +97,14 @@ def _tendons(grid: Grid) -> np.ndarray:
     for bone in long_bones():
         reach = 0.45 if bone.kind == "distal" else 1.0
         for side, radius in ((-7.2, 2.3), (6.2, 1.3)):
-            rods.append((bone.frame.world(0, side * bone.size, 0), bone.frame.world(0, side * bone.size, reach * bone.length), radius, radius))
+            rods.append(
+                (
+                    bone.frame.world(0, side * bone.size, 0),
+                    bone.frame.world(0, side * bone.size, reach * bone.length),
+                    radius,
+                    radius,
+                )
+            )
     for i, ray in enumerate(FINGERS):
         rods.append((np.array([-4.5 + 4 * i, -9, -40]), np.array([-3.5 + 3.5 * i, -10, 22]), 2.2, 2.2))
         rods.append((np.array([-3.5 + 3.5 * i, -10, 22]), np.add(ray.head, (0, -10.5, 0)), 2.2, 2.2))
@@ -99,10 +112,12 @@ def _tendons(grid: Grid) -> np.ndarray:
     return field
 
 
-def _add_rods(grid: Grid, field: np.ndarray, rods: list) -> None:
+def _add_rods(grid: Grid, field: np.ndarray, rods: list[tuple[Any, Any, float, float]]) -> None:
     for start, end, radius, last in rods:
         ends = np.array([start, end], dtype=float)
-        window, axes = grid.window(ends.min(axis=0) - max(radius, last) - 4, ends.max(axis=0) + max(radius, last) + 4)
+        window, axes = grid.window(
+            ends.min(axis=0) - max(radius, last) - 4, ends.max(axis=0) + max(radius, last) + 4
+        )
         field[window] = np.minimum(field[window], capsule(axes, start, end, radius, last))
 
 

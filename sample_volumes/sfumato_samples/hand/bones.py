@@ -97,7 +97,9 @@ def parts() -> tuple[Part, ...]:
     return (*(_long(bone) for bone in long_bones()), *(_carpal(name) for name in CARPALS), _radius(), _ulna())
 
 
-def _part(points: np.ndarray, margin: float, distance: Callable[[Axes], tuple[np.ndarray, np.ndarray]]) -> Part:
+def _part(
+    points: np.ndarray, margin: float, distance: Callable[[Axes], tuple[np.ndarray, np.ndarray]]
+) -> Part:
     return Part(points.min(axis=0) - margin, points.max(axis=0) + margin, distance)
 
 
@@ -140,7 +142,9 @@ def _ends(bone: Bone, body: np.ndarray, local: Axes) -> np.ndarray:
     """Add what makes the heads: a ball for the knuckles, two condyles with a groove for the finger joints."""
     s = bone.size
     if bone.kind == "metacarpal":
-        return smooth_min(body, ellipsoid(local, (0, -0.8, bone.length - 6.2 * s), (6.9 * s, 7.8 * s, 6.9 * s)), 3.0)
+        return smooth_min(
+            body, ellipsoid(local, (0, -0.8, bone.length - 6.2 * s), (6.9 * s, 7.8 * s, 6.9 * s)), 3.0
+        )
     if bone.kind == "distal":
         return body
     r = (4.4 if bone.kind == "proximal" else 3.8) * s
@@ -171,7 +175,9 @@ def _radius() -> Part:
         u, v, w = frame.local(axes)
         t = np.clip(w * np.float32(1 / 30), 0, 1)
         flare = (1 - t) * (1 - t)
-        q = length(u / (np.float32(7.2) + np.float32(9.6) * flare), v / (np.float32(6.5) + np.float32(4.5) * flare))
+        q = length(
+            u / (np.float32(7.2) + np.float32(9.6) * flare), v / (np.float32(6.5) + np.float32(4.5) * flare)
+        )
         shank = smooth_max((q - 1) * (np.float32(6.5) + np.float32(4.5) * flare), -w, 4.0)
         styloid = capsule(axes, (-15.5, 0.0, -8), (-20.5, 0.0, 4.0), 6.5, 3.6)
         return smooth_min(shank, styloid, 8), np.clip(t * np.float32(2.2) - np.float32(0.9), 0, 1)
