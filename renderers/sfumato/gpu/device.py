@@ -5,7 +5,8 @@ from __future__ import annotations
 import ctypes
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import moderngl
@@ -98,12 +99,19 @@ class Device:
         finally:
             self._delete_sync(fence)
 
-    def check(self, doing: str) -> None:
-        """Raise a `GpuError` if OpenGL reported an error while doing something."""
+    @contextmanager
+    def checked(self, doing: str) -> Iterator[None]:
+        """Raise a `GpuError` if OpenGL reports an error within the block, naming what was being done."""
+        while self._get_error():  # moderngl leaves one behind when it makes a framebuffer
+            pass
+        try:
+            yield
+        except Exception as error:  # moderngl raises its own bare Error
+            raise GpuError(doing, f"{error} on {self.name}") from None
         code = self._get_error()
         if code:
             name = {0x0505: "out of GPU memory", 0x0506: "incomplete framebuffer"}.get(code, f"OpenGL error 0x{code:04x}")
-            raise GpuError(doing, f"{name} on {self.name}")
+            raise GpuError(doing, f"{name} on {self.name}; use a smaller picture or volume")
 
     def collect(self) -> None:
         """Free GPU objects that nothing refers to any more."""

@@ -27,6 +27,8 @@ class TransferTables:
         1D: integral of (tau * colour, tau); 2D: (tau * colour, tau) over value and gradient magnitude.
     emission : texture
         The same of tau * emission.
+    extinction : texture
+        Integral of tau alone (1D).
     visible : ndarray of bool, shape (ENTRIES,)
         Values with any extinction.
     max_gradient : float
@@ -37,6 +39,7 @@ class TransferTables:
 
     color: Any
     emission: Any
+    extinction: Any
     visible: np.ndarray
     max_gradient: float
     emits: bool
@@ -46,6 +49,7 @@ class TransferTables:
         """Free the textures."""
         self.color.release()
         self.emission.release()
+        self.extinction.release()
 
 
 def make_tables(device: Device, volume: Volume, texture: VolumeTexture, transfer: TransferFunction) -> TransferTables:
@@ -60,7 +64,8 @@ def make_tables(device: Device, volume: Volume, texture: VolumeTexture, transfer
     emission = _integral(np.concatenate([sampled[:, 4:] * tau[:, None], tau[:, None]], axis=1))
     emits = bool((sampled[:, 4:] * tau[:, None]).any())
     textures = [_upload(device, table[None]) for table in (color, emission)]
-    return TransferTables(textures[0], textures[1], tau > 0, 0.0, emits, 2 * color.nbytes)
+    extinction = _upload(device, color[None, :, 3:])
+    return TransferTables(textures[0], textures[1], extinction, tau > 0, 0.0, emits, 2 * color.nbytes)
 
 
 def _integral(samples: np.ndarray) -> np.ndarray:
@@ -83,12 +88,13 @@ def _tables_2d(device: Device, volume: Volume, texture: VolumeTexture, transfer:
     visible = np.interp(np.linspace(0, 1, ENTRIES), np.linspace(0, 1, ENTRIES_2D), (tau[..., 0] > 0).any(axis=0)) > 0
     textures = [_upload(device, table) for table in (color, emission)]
     emits = bool((sampled[..., 4:] * tau).any())
-    return TransferTables(textures[0], textures[1], visible, top / (high - low), emits, 2 * color.nbytes)
+    extinction = _upload(device, np.zeros((1, 2, 1), dtype=np.float32))
+    return TransferTables(textures[0], textures[1], extinction, visible, top / (high - low), emits, 2 * color.nbytes)
 
 
 def _upload(device: Device, table: np.ndarray) -> Any:
-    height, width = table.shape[:2]
-    texture = device.ctx.texture((width, height), 4, np.ascontiguousarray(table), dtype="f4")
+    height, width, components = table.shape
+    texture = device.ctx.texture((width, height), components, np.ascontiguousarray(table), dtype="f4")
     texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
     texture.repeat_x = texture.repeat_y = False
     return texture

@@ -24,7 +24,8 @@ class Target:
     def __init__(self, device: Device, size: tuple[int, int], components: int = 4, dtype: str = "f4") -> None:
         self.device = device
         self.size = size
-        self.texture = device.ctx.texture(size, components, dtype=dtype)
+        with device.checked(f"a picture of {size[0]} x {size[1]} pixels"):
+            self.texture = device.ctx.texture(size, components, dtype=dtype)
         self.texture.repeat_x = self.texture.repeat_y = False
         self.texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self.fbo = device.ctx.framebuffer([self.texture])

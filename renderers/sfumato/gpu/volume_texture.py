@@ -56,11 +56,8 @@ def upload_volume(device: Device, volume: Volume) -> VolumeTexture:
     voxels, domain = normalised(volume)
     scale = np.float32(1 / np.iinfo(voxels.dtype).max)
     low, high = block_extremes(voxels)
-    try:
+    with device.checked(f"{voxels.nbytes >> 20} MiB for the volume"):
         texture = device.ctx.texture3d(volume.dims, 1, voxels, alignment=1, dtype=_DTYPE[voxels.itemsize])
-    except Exception as error:
-        raise GpuError(f"{voxels.nbytes >> 20} MiB for the volume", f"{device.name}: {error}; load it at a lower resolution") from None
-    device.check("uploading the volume")
     texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
     texture.repeat_x = texture.repeat_y = texture.repeat_z = False
     return VolumeTexture(texture, domain, low * scale, high * scale, voxels.nbytes)
@@ -110,9 +107,15 @@ class EmptySpace:
     ----------
     bounds : ndarray, shape (2, 3), or None
         Texture coordinates of the box around all that is visible; None if nothing is.
+    centers : ndarray, shape (n, 3)
+        Texture coordinates of the centres of the blocks in which something is visible.
+    half_block : ndarray, shape (3,)
+        Half a block's size in texture coordinates.
     """
 
     texture: Any
+    centers: np.ndarray
+    half_block: np.ndarray
     bounds: np.ndarray | None
     size: int
 
@@ -132,7 +135,9 @@ def map_empty_space(device: Device, volume: Volume, occupied: np.ndarray) -> Emp
     bz, by, bx = occupied.shape
     texture = device.ctx.texture3d((bx, by, bz), 1, np.ascontiguousarray(distance), alignment=1, dtype="u1")
     texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
-    return EmptySpace(texture, _bounds(volume, occupied), distance.nbytes)
+    half = BLOCK / 2 / np.asarray(volume.dims)
+    centers = (np.argwhere(occupied)[:, ::-1] * 2 + 1) * half
+    return EmptySpace(texture, centers, half, _bounds(volume, occupied), distance.nbytes)
 
 
 def _bounds(volume: Volume, occupied: np.ndarray) -> np.ndarray | None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..scene import Camera, Scene, TransferFunction, Volume
 
 if TYPE_CHECKING:
@@ -94,7 +92,15 @@ class Frame:
     @property
     def pixel_jitter(self) -> tuple[float, float]:
         """Offset of the rays in pixels: R2 sequence, (0, 0) first."""
-        g = 1.32471795724474602596
-        x = (0.5 + self.index / g) % 1.0 - 0.5
-        y = (0.5 + self.index / (g * g)) % 1.0 - 0.5
-        return float(np.float32(x)), float(np.float32(y))
+        return _r2(self.index)
+
+    @property
+    def lattice_jitter(self) -> tuple[float, float]:
+        """Offset of the occlusion buffers' grid in texels, in another order than the rays'."""
+        return _r2(self.index * 7)
+
+
+def _r2(index: int) -> tuple[float, float]:
+    """Return a point of the R2 low-discrepancy sequence in [-0.5, 0.5)^2; (0, 0) is the first."""
+    g = 1.32471795724474602596
+    return (0.5 + index / g) % 1.0 - 0.5, (0.5 + index / (g * g)) % 1.0 - 0.5

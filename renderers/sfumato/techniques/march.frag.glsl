@@ -97,60 +97,56 @@ void main() {
 #endif
     int i = max(u_first, int(floor((range.x - z0) / dz)));
     float z = max(range.x, z0 + float(i) * dz);
-    float value = 0.0;
-    bool known = false;          // whether `value` is the volume's at z
-    bool hollow = true;          // whether the last segment was empty, so that looking for empty space may pay
+    float value = volume_value(a + b * z);
     vec3 view = -ray.direction / secant;
 
-    for (; i < u_last && z < range.y; ++i) {
-        if (hollow) {
-            float run = empty_run(a, b, z);
-            if (run > 0.0) {
-                int next = int(floor((min(z + run, range.y + dz) - z0) / dz));
-                if (next > i) {
-                    i = next - 1;
-                    z = z0 + float(next) * dz;
-                    known = false;
-                    continue;
-                }
-            }
-        }
-        float z_next = min(z0 + float(i + 1) * dz, range.y);
-        if (z_next <= z) continue;
-        if (!known) value = volume_value(a + b * z);
-        float value_next = volume_value(a + b * z_next);
+    // Two loops, so that software renderers, which run both sides of a branch, do not shade what is empty.
+    while (sum.a < OPAQUE) {
+        // 1. On to the next segment in which something is visible.
+        float z_next = z, value_next = value, magnitude = 0.0;
+        vec4 mean = vec4(0.0);
+        for (; i < u_last && z < range.y; ++i) {
+            z_next = min(z0 + float(i + 1) * dz, range.y);
+            value_next = volume_value(a + b * z_next);
 #ifdef TRANSFER_2D
-        float magnitude = length(volume_gradient(a + b * (0.5 * (z + z_next))));
-#else
-        const float magnitude = 0.0;
+            magnitude = length(volume_gradient(a + b * (0.5 * (z + z_next))));
 #endif
-        vec4 mean = classify(value, value_next, magnitude);
-        hollow = mean.a <= 0.0;
-        if (!hollow) {
-            float depth = mean.a * (z_next - z);        // optical depth along the axis
-            float alpha = 1.0 - exp(-depth * secant);
-            vec3 color = mean.rgb / mean.a;
+            mean = classify(value, value_next, magnitude);
+            if (mean.a > 0.0 && z_next > z) break;
+            mean = vec4(0.0);
+            // Nothing here: look how far nothing goes on, and land on the last plane before its end.
+            int next = int(floor((min(z + empty_run(a, b, z), range.y + dz) - z0) / dz));
+            if (next > i + 1) {
+                i = next - 1;
+                z_next = z0 + float(next) * dz;
+                value_next = volume_value(a + b * z_next);
+            }
+            z = z_next;
+            value = value_next;
+        }
+        if (mean.a <= 0.0) break;
+
+        // 2. Shade it.
+        float depth = mean.a * (z_next - z);        // optical depth along the axis
+        float alpha = 1.0 - exp(-depth * secant);
+        vec3 color = mean.rgb / mean.a;
 #if LIGHTS > 0
-            float front = z0 + float(i) * dz;
-            vec3 c = lit(i, ray.lateral0 + ray.lateral1 * front, ray.lateral0 + ray.lateral1 * (front + dz),
-                         color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
+        float front = z0 + float(i) * dz;
+        vec3 c = lit(i, ray.lateral0 + ray.lateral1 * front, ray.lateral0 + ray.lateral1 * (front + dz),
+                     color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
 #elif PHONG > 0
-            vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
+        vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
 #else
-            vec3 c = alpha * color;
+        vec3 c = alpha * color;
 #endif
 #if EMISSION
-            c += alpha * classify_emission(value, value_next, magnitude) / mean.a;
+        c += alpha * classify_emission(value, value_next, magnitude) / mean.a;
 #endif
-            sum += (1.0 - sum.a) * vec4(c, alpha);
-            if (sum.a > OPAQUE) {
-                sum /= sum.a;
-                break;
-            }
-        }
-        value = value_next;
-        known = true;
+        sum += (1.0 - sum.a) * vec4(c, alpha);
         z = z_next;
+        value = value_next;
+        ++i;
     }
+    if (sum.a >= OPAQUE) sum /= sum.a;
     o_color = sum;
 }

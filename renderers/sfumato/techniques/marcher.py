@@ -35,6 +35,7 @@ class Material:
     volume: VolumeTexture
     tables: TransferTables
     empty: EmptySpace
+    clipped: bool
 
 
 def prepare_material(frame: Frame) -> Material:
@@ -48,12 +49,13 @@ def prepare_material(frame: Frame) -> Material:
         lambda: map_empty_space(device, volume, occupied_blocks(texture, tables.visible)),
         lambda e: e.size,
     )
-    return Material(texture, tables, empty)
+    return Material(texture, tables, empty, any(plane.enabled for plane in frame.scene.clip))
 
 
 def material_defines(material: Material) -> tuple[tuple[str, int], ...]:
     """Return the defines of a material's shader variant."""
-    return (("TRANSFER_2D", 1),) if material.tables.max_gradient > 0 else ()
+    two = (("TRANSFER_2D", 1),) if material.tables.max_gradient > 0 else ()
+    return (("CLIPS", int(material.clipped)), *two)
 
 
 def bind_material(program: Program, material: Material, frame: Frame) -> None:
@@ -61,7 +63,7 @@ def bind_material(program: Program, material: Material, frame: Frame) -> None:
     volume, tables = frame.volume, material.tables
     program.bind(
         u_volume=material.volume.texture, u_distance=material.empty.texture,
-        u_integral=tables.color, u_emission=tables.emission, u_table2d=tables.color, u_emission2d=tables.emission,
+        u_integral=tables.color, u_emission=tables.emission, u_extinction=tables.extinction, u_table2d=tables.color, u_emission2d=tables.emission,
     )  # fmt: skip
     dims = np.asarray(volume.dims)
     program.set(

@@ -19,7 +19,7 @@ from ..scene import Camera, ClipPlane, Scene, Volume
 
 #: Fractions of a texel in which columns are sheared.
 SHEAR_UNIT = 32768
-#: Texels of the lattice beyond the volume's projection on each side.
+#: Texels of the lattice beyond the volume's projection on each side, besides what the footprint reaches.
 PAD = 2
 
 
@@ -90,6 +90,11 @@ class Lattice:
         Shift of a column per plane in 1/32768 texel; signed: light from behind goes the other way.
     rear : bool
         Whether light enters slabs at their back.
+    offset : (float, float)
+        Shift of the whole grid in texels, each in [-0.5, 0.5]; changes from frame to frame, so that the
+        grid's pattern on surfaces that light grazes averages out.
+    border : int
+        Texels on each side beyond the volume's projection.
     """
 
     stack: Stack
@@ -97,20 +102,28 @@ class Lattice:
     size: tuple[int, int]
     shear: tuple[int, int]
     rear: bool
+    offset: tuple[float, float]
+    border: int
 
     @staticmethod
-    def over(stack: Stack, texel: float, mean: float, rotation: float, rear: bool) -> Lattice:
-        """Return the lattice of a light whose kernel's centroid lies `mean` slice distances along its rotation (degrees)."""
-        extent = np.ceil((stack.high - stack.low) / texel - 1e-9).astype(int) + 2 * PAD
+    def over(
+        stack: Stack, texel: float, mean: float, rotation: float, rear: bool, offset: tuple[float, float], reach: int
+    ) -> Lattice:
+        """Return the lattice of a light whose kernel's centroid lies `mean` slice distances along its rotation (degrees).
+
+        ``reach`` is how many texels the footprint reaches to each side.
+        """
+        border = PAD + reach + 1
+        extent = np.ceil((stack.high - stack.low) / texel - 1e-9).astype(int) + 2 * border
         phi, sign = math.radians(rotation), -1 if rear else 1
         per_plane = mean * stack.step / texel
         shear = tuple(sign * round(per_plane * c * SHEAR_UNIT) for c in (math.cos(phi), math.sin(phi)))
-        return Lattice(stack, texel, (int(extent[0]), int(extent[1])), (shear[0], shear[1]), rear)
+        return Lattice(stack, texel, (int(extent[0]), int(extent[1])), (shear[0], shear[1]), rear, offset, border)
 
     @property
     def origin(self) -> np.ndarray:
         """Lateral position in mm of texel coordinate 0 at plane 0, shape (2,)."""
-        return np.asarray(self.stack.low - PAD * self.texel)
+        return np.asarray(self.stack.low + self.texel * (np.asarray(self.offset) - self.border))
 
     def base(self, plane: int) -> np.ndarray:
         """Return the columns that lie at texel (0, 0) of a plane, shape (2,)."""
@@ -127,51 +140,6 @@ class Lattice:
         """
         offset = self.origin + self.texel * (base - self.base(plane) - self.carried(plane))
         return np.array([[self.texel, 0, offset[0]], [0, self.texel, offset[1]], [0, 0, self.stack.depth(plane)]])
-
-    def rects(self, corners: np.ndarray, margin: int) -> np.ndarray:
-        """Return, for each slab, the texels that a convex box touches; int, shape (count, 4): x0, y0, x1, y1.
-
-        Texels are those of the plane where light enters; an empty rectangle has x0 >= x1.
-        """
-        at = self.stack.view.coordinates(corners)
-        planes = self.stack.z0 + np.arange(self.stack.count + 1) * self.stack.step
-        low, high = _sections(at, planes)
-        # A slab holds what both its planes cut and the corners between them.
-        low, high = np.minimum(low[:-1], low[1:]), np.maximum(high[:-1], high[1:])
-        for corner in at:
-            slab = int(np.clip(math.floor((corner[2] - planes[0]) / self.stack.step), 0, self.stack.count - 1))
-            low[slab] = np.minimum(low[slab], corner[:2])
-            high[slab] = np.maximum(high[slab], corner[:2])
-        enter = np.arange(self.stack.count)[:, None] + (1 if self.rear else 0)
-        carried = (enter * np.array(self.shear)) % SHEAR_UNIT / SHEAR_UNIT
-        with np.errstate(invalid="ignore"):
-            first = np.floor((low - self.origin) / self.texel + carried) - margin
-            last = np.ceil((high - self.origin) / self.texel + carried) + margin
-        size = np.array(self.size)
-        empty = ~np.isfinite(low).all(axis=1)
-        rect = np.concatenate([np.clip(np.nan_to_num(first, posinf=0), 0, size), np.clip(np.nan_to_num(last, neginf=0), 0, size)], axis=1)
-        rect[empty] = 0
-        return rect.astype(int)
-
-
-#: Edges of a box whose corners are numbered as in `Volume.corners`: bit 2 is x, bit 1 is y, bit 0 is z.
-_EDGES = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
-
-
-def _sections(at: np.ndarray, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return lateral bounds of a box's section with each plane; (inf, -inf) where there is none."""
-    low = np.full((len(planes), 2), np.inf)
-    high = np.full((len(planes), 2), -np.inf)
-    for a, b in _EDGES:
-        span = at[b, 2] - at[a, 2]
-        if abs(span) < 1e-12:
-            continue
-        s = (planes - at[a, 2]) / span
-        hit = (s >= 0) & (s <= 1)
-        point = at[a, :2] + s[hit, None] * (at[b, :2] - at[a, :2])
-        low[hit] = np.minimum(low[hit], point)
-        high[hit] = np.maximum(high[hit], point)
-    return low, high
 
 
 def clip_uniforms(scene: Scene, volume: Volume) -> dict[str, object]:

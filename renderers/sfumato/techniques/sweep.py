@@ -8,6 +8,7 @@ column is taken away. What arrives at a slab is written to a layer of a texture 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,14 +16,19 @@ import moderngl
 import numpy as np
 
 from ..gpu import Device, LayerTarget, Program, ShaderSource
-from ..gpu.program import RECT_VERTEX
+from ..gpu.program import PACKAGE
 from .footprint import Stencil, effective_secant, kernel_moments, stencil_for
 from .frame import Frame
 from .marcher import Material, bind_material, material_defines
-from .stack import Lattice, Stack
+from .stack import PAD, Lattice, Stack
+from .tiles import TILE, TileLists, list_tiles
 
-#: Texels around what is visible that are swept too: what the footprint's tail carries out may come back.
-MARGIN = 4
+#: Width of the texture that holds the tiles' indices.
+TILES_PER_ROW = 1024
+
+#: Most slabs that one filtering serves, and its largest variance in texels squared.
+MAX_RHYTHM = 4
+RHYTHM_VARIANCE = 0.1
 
 #: The forms of occlusion and their number in the shader.
 FORMS = {"extinction": 0, "additive": 1, "multiplicative": 2}
@@ -36,28 +42,70 @@ class Lamp:
     ----------
     path : float
         Length of the light's way through a slab over the slab's thickness.
-    rects : ndarray of int, shape (slabs, 4)
-        Texels to sweep: x0, y0, x1, y1.
+    tiles : TileLists
+        What has to be swept.
+    every : int
+        The footprint is applied at every so many slabs, with so many times its variance.
     """
 
     lattice: Lattice
     stencil: Stencil
     path: float
-    rects: np.ndarray
+    tiles: TileLists
+    every: int
 
 
-def lamp_for(frame: Frame, stack: Stack, corners: np.ndarray, angles: tuple[float, float], aperture: float) -> Lamp:
-    """Return lattice, stencil and rectangles of a light given by (tilt, rotation) and aperture in degrees."""
-    tilt, rotation = angles
-    moments = kernel_moments(tilt, aperture, frame.params.falloff)
+def lamps_for(
+    frame: Frame, material: Material, stack: Stack, angles: Sequence[tuple[float, float]], apertures: Sequence[float]
+) -> tuple[Lamp, ...]:
+    """Return lattice, stencil and tiles of each light, given by (tilt, rotation) and aperture in degrees."""
     texel = frame.volume.min_spacing / frame.params.resolution * frame.quality.light
-    lattice = Lattice.over(stack, texel, moments.mean, rotation, tilt > 90)
     # The nominal step in place of one of the two: a drag with fewer slabs blurs as much as the full picture.
     area = stack.step * frame.nominal_step / texel**2
+    moments = [kernel_moments(tilt, aperture, frame.params.falloff) for (tilt, _), aperture in zip(angles, apertures, strict=True)]
+    rhythm = [1 if FORMS[frame.params.occlusion] else filter_rhythm(max(m.along, m.across) * area) for m in moments]
+    stencils = [
+        _stencil(m.along * area * every, m.across * area * every, rotation)
+        for m, every, (_, rotation) in zip(moments, rhythm, angles, strict=True)
+    ]
+    # All lights share one size of grid, so that their layers can lie in one texture.
+    reach = max((abs(c) for stencil in stencils for tap in stencil.taps for c in tap), default=0)
+    # A slab's columns also begin texels away from those of the slab before: steep lights move by several.
+    reach += math.ceil(max((m.mean for m in moments), default=0.0) * stack.step / texel)
+    centers, half = _blocks(frame, material, stack)
+    lamps = []
+    for (tilt, rotation), aperture, m, stencil, every in zip(angles, apertures, moments, stencils, rhythm, strict=True):
+        lattice = Lattice.over(stack, texel, m.mean, rotation, tilt > 90, frame.lattice_jitter, reach)
+        tiles = list_tiles(lattice, centers, half, max(m.along, m.across) * area)
+        lamps.append(Lamp(lattice, stencil, effective_secant(tilt, aperture), tiles, every))
+    return tuple(lamps)
+
+
+def filter_rhythm(variance: float) -> int:
+    """Return at how many slabs at a time to apply a footprint whose variance, in texels squared, is so small.
+
+    Variances add, and columns carry the light exactly in between: filtering four slabs at once saves most of
+    the fetches. Our own form does so; the published forms are kept literal.
+    """
+    every = 1
+    while every < MAX_RHYTHM and 2 * every * variance <= RHYTHM_VARIANCE:
+        every *= 2
+    return every
+
+
+def _stencil(along: float, across: float, rotation: float) -> Stencil:
+    """Return the stencil of a footprint whose axis along the light is turned by `rotation` degrees."""
     c, s = math.cos(math.radians(rotation)), math.sin(math.radians(rotation))
-    along, across = moments.along * area, moments.across * area
-    stencil = stencil_for(along * c * c + across * s * s, (along - across) * c * s, along * s * s + across * c * c)
-    return Lamp(lattice, stencil, effective_secant(tilt, aperture), lattice.rects(corners, MARGIN))
+    return stencil_for(along * c * c + across * s * s, (along - across) * c * s, along * s * s + across * c * c)
+
+
+def _blocks(frame: Frame, material: Material, stack: Stack) -> tuple[np.ndarray, np.ndarray]:
+    """Return centres and half extents, along the view's axes in mm, of the blocks in which something is visible."""
+    empty, scene = material.empty, frame.scene
+    shown = ((empty.centers + empty.half_block >= scene.crop.low) & (empty.centers - empty.half_block <= scene.crop.high)).all(axis=1)
+    matrix = frame.volume.world_from_texture
+    centers = stack.view.coordinates(empty.centers[shown] @ matrix[:3, :3].T + matrix[:3, 3])
+    return centers, np.abs(stack.view.axes @ matrix[:3, :3]) @ empty.half_block
 
 
 class Sweeper:
@@ -67,30 +115,53 @@ class Sweeper:
         self.device = device
         self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
         self._targets: list[LayerTarget] = []
-        self._frame: Frame | None = None
+        self._pairs: list[tuple[Program, Program]] = []
+        self._tiles: Any = None
         self._clear = 1.0
 
     def prepare(self, frame: Frame, material: Material, lamp: Lamp) -> None:
         """Begin with a light, where no slab has taken any of it yet."""
         form = FORMS[frame.params.occlusion]
-        defines = (("LITERAL", form), *material_defines(material))
-        if defines not in self._programs:
-            source = ShaderSource("techniques/sweep.frag.glsl", defines)
-            self._programs[defines] = Program(self.device, source, RECT_VERTEX)
         size = lamp.lattice.size
         if not self._targets or self._targets[0].state.size != size:
             self._release_targets()
             self._targets = [LayerTarget(self.device, new_state(self.device, size)) for _ in range(2)]
-        self._program, self._lamp = self._programs[defines], lamp
+        self._lamp = lamp
         self._clear = 0.0 if form == FORMS["additive"] else 1.0
-        bind_material(self._program, material, frame)
-        taps = np.array(lamp.stencil.taps, dtype=np.int32)
-        self._program.set(
-            u_extent=tuple(map(float, size)), u_thickness=frame.step, u_path=lamp.path, u_taps=taps,
-            u_weights=(lamp.stencil.center, *lamp.stencil.weights),
-        )  # fmt: skip
         self._to_texture = _texture_from_view(frame, lamp.lattice.stack)
-        self._targets[0].fbo.clear(self._clear, -1.0)
+        self._upload_tiles(lamp.tiles)
+        border = lamp.lattice.border - PAD
+        self._pairs = []
+        for filtering in (0, 1):
+            hollow = self._program((("LITERAL", form), ("HOLLOW", 1), ("FILTER", filtering)))
+            full = self._program((("LITERAL", form), ("HOLLOW", 0), ("FILTER", filtering), *material_defines(material)))
+            bind_material(full, material, frame)
+            self._pairs.append((hollow, full))
+        for program in (program for pair in self._pairs for program in pair):
+            program.set(
+                u_extent=tuple(map(float, size)), u_thickness=frame.step, u_path=lamp.path,
+                u_taps=np.array(lamp.stencil.taps, dtype=np.int32), u_weights=(lamp.stencil.center, *lamp.stencil.weights),
+                u_tile_size=TILE, u_columns_low=lamp.tiles.low, u_inner=(border, border),
+                u_outer=(size[0] - border, size[1] - border),
+            )  # fmt: skip
+        self._targets[0].plain.clear(self._clear, -1.0)
+
+    def _program(self, defines: tuple[tuple[str, int], ...]) -> Program:
+        if defines not in self._programs:
+            source = ShaderSource("techniques/sweep.frag.glsl", defines)
+            vertex = (PACKAGE / "shaders/tiles.vert.glsl").read_text(encoding="utf-8")
+            self._programs[defines] = Program(self.device, source, vertex)
+        return self._programs[defines]
+
+    def _upload_tiles(self, lists: TileLists) -> None:
+        """Put the lists into a texture as wide as textures may be everywhere."""
+        if self._tiles is not None:
+            self._tiles.release()
+        rows = max(1, -(-len(lists.tiles) // TILES_PER_ROW))
+        data = np.zeros((rows * TILES_PER_ROW, 4), dtype=np.int16)
+        data[: len(lists.tiles), :3] = lists.tiles
+        self._tiles = self.device.ctx.texture((TILES_PER_ROW, rows), 4, data, dtype="i2")
+        self._tiles.filter = (moderngl.NEAREST, moderngl.NEAREST)
 
     def load(self, kept: Any) -> None:
         """Go on from a state that `keep` kept."""
@@ -108,21 +179,25 @@ class Sweeper:
         self._targets = [target, source]
         lattice = self._lamp.lattice
         enter, leave, before = (index + 1, index, index + 2) if lattice.rear else (index, index + 1, index - 1)
-        target.use(layers, layer)
-        # Beyond the rectangle nothing stands in the light.
-        target.fbo.clear(self._clear, -1.0)
-        x0, y0, x1, y1 = (int(v) for v in self._lamp.rects[index])
-        if x0 >= x1 or y0 >= y1:
+        # Where no tile is drawn nothing stands in the light.
+        target.plain.clear(self._clear, -1.0)
+        full, hollow = self._lamp.tiles.of_slab(index)
+        if full[1] + hollow[1] == 0:
             return
+        target.use(layers, layer)
         base = lattice.base(enter)
-        self._program.bind(u_state=source.state)
-        self._program.set(
-            u_shift=tuple((base - lattice.base(before)).tolist()),
-            u_enter=self._affine(lattice.positions(enter, base)),
-            u_leave=self._affine(lattice.positions(leave, base)),
-        )
-        width, height = lattice.size
-        self._program.draw(rect=(2 * x0 / width - 1, 2 * y0 / height - 1, 2 * x1 / width - 1, 2 * y1 / height - 1))
+        shift = tuple((base - lattice.base(before)).tolist())
+        pair = self._pairs[int(index % self._lamp.every == 0)]
+        for program, (first, count) in zip(pair, (hollow, full), strict=True):
+            if count == 0:
+                continue
+            program.bind(u_state=source.state, u_tiles=self._tiles)
+            program.set(u_shift=shift, u_base=tuple(base.tolist()), u_tiles_first=first)
+            if program is pair[1]:
+                program.set(
+                    u_enter=self._affine(lattice.positions(enter, base)), u_leave=self._affine(lattice.positions(leave, base))
+                )
+            program.draw_rects(count)
 
     def _affine(self, positions: np.ndarray) -> tuple[float, ...]:
         """Return the 3 x 3 from texels to texture coordinates, column by column."""
@@ -136,6 +211,8 @@ class Sweeper:
             program.release()
         self._programs.clear()
         self._release_targets()
+        if self._tiles is not None:
+            self._tiles.release()
 
     def _release_targets(self) -> None:
         for target in self._targets:

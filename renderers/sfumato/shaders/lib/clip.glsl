@@ -1,4 +1,5 @@
 // Clip planes and the crop box, both in texture coordinates: dot(plane.xyz, t) + plane.w >= 0 is kept.
+// CLIPS      there are clip planes
 
 uniform vec4 u_clip[6];
 uniform int u_clips;
@@ -13,6 +14,7 @@ vec2 kept_range(vec3 a, vec3 b, vec2 range) {
     vec3 enter = min(s0, s1), leave = max(s0, s1);
     range.x = max(range.x, max(enter.x, max(enter.y, enter.z)));
     range.y = min(range.y, min(leave.x, min(leave.y, leave.z)));
+#if CLIPS
     for (int k = 0; k < u_clips; ++k) {
         float at = dot(u_clip[k].xyz, a) + u_clip[k].w;
         float slope = dot(u_clip[k].xyz, b);
@@ -20,5 +22,6 @@ vec2 kept_range(vec3 a, vec3 b, vec2 range) {
         else if (slope > 0.0) range.x = max(range.x, -at / slope);
         else range.y = min(range.y, -at / slope);
     }
+#endif
     return range;
 }

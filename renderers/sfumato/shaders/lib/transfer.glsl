@@ -29,5 +29,15 @@ vec4 integral_slope(sampler2D table, float s0, float s1) {
     return (textureLod(table, vec2(at.y, 0.5), 0.0) - textureLod(table, vec2(at.x, 0.5), 0.0)) / (s1 - s0);
 }
 vec4 classify(float s0, float s1, float gradient) { return max(integral_slope(u_integral, s0, s1), 0.0); }
+
+uniform sampler2D u_extinction;      // integral of tau alone
+
+// Mean extinction per mm between two values that are rounded to the table's entries: cheap, for what casts shadows.
+float classify_extinction(float s0, float s1) {
+    int k0 = int(s0 * (u_table_size - 1.0) + 0.5), k1 = int(s1 * (u_table_size - 1.0) + 0.5);
+    if (k0 == k1) { k0 = max(k0 - 1, 0); k1 = min(k1 + 1, int(u_table_size) - 1); }
+    float change = texelFetch(u_extinction, ivec2(k1, 0), 0).r - texelFetch(u_extinction, ivec2(k0, 0), 0).r;
+    return change / (float(k1 - k0) / (u_table_size - 1.0));
+}
 vec3 classify_emission(float s0, float s1, float gradient) { return max(integral_slope(u_emission, s0, s1).rgb, 0.0); }
 #endif

@@ -1,0 +1,129 @@
+"""Which squares of a lattice a sweep has to touch at which slab.
+
+Most of an occlusion buffer is empty air, in which nothing need be done. A tile of columns is *full* at a
+slab if something visible may stand in it there; it is *dirty* once a full tile lay before it on the light's
+way, and *needed* as long as one lies after it. Dirty and needed tiles that are not full are only filtered;
+all others are left clear. Tiles are columns of the sheared lattice, so that light stays in its tile but for
+the footprint's blur, by which dirty and needed tiles are dilated.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import maximum_filter
+
+from .stack import SHEAR_UNIT, Lattice
+
+#: Edge of a tile in texels.
+TILE = 16
+#: Slabs that share a list of tiles.
+GROUP = 8
+#: Standard deviations of blur that count.
+TAIL = 3.0
+
+
+@dataclass(frozen=True)
+class TileLists:
+    """Lists of tiles, one full and one hollow for each group of slabs.
+
+    Attributes
+    ----------
+    tiles : ndarray of int16, shape (n, 3)
+        Runs of tiles: indices x, y of the first and their number along x; list after list.
+    full, hollow : ndarray of int, shape (groups, 2)
+        First run and number of runs.
+    low : (int, int)
+        Column at the corner of tile (0, 0).
+    """
+
+    tiles: np.ndarray
+    full: np.ndarray
+    hollow: np.ndarray
+    low: tuple[int, int]
+
+    def of_slab(self, slab: int) -> tuple[tuple[int, int], tuple[int, int]]:
+        """Return (first, count) of the full and of the hollow runs at a slab."""
+        group = slab // GROUP
+        a, b = self.full[group], self.hollow[group]
+        return (int(a[0]), int(a[1])), (int(b[0]), int(b[1]))
+
+
+def list_tiles(lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, variance: float) -> TileLists:
+    """Sort the tiles of a lattice.
+
+    Parameters
+    ----------
+    centers : ndarray, shape (n, 3)
+        Centres of the blocks in which something is visible: lateral x, y and depth in mm.
+    half_sizes : ndarray, shape (3,)
+        Half the extent of a block along the same axes.
+    variance : float
+        Blur of one slab, in texels squared, in its widest direction.
+    """
+    groups = lattice.stack.count // GROUP + 1
+    full, low = _full_tiles(lattice, centers, half_sizes, groups)
+    spread = math.ceil(TAIL * math.sqrt(lattice.stack.count * variance) / TILE)
+    near = maximum_filter(full, size=(1, 2 * spread + 1, 2 * spread + 1))
+    along = near[::-1] if lattice.rear else near
+    dirty = np.maximum.accumulate(along, axis=0)
+    needed = np.maximum.accumulate(along[::-1], axis=0)[::-1]
+    active = dirty & needed
+    if lattice.rear:
+        active = active[::-1]
+    rows, spans, offset = [], [], 0
+    for kind in (full, active & ~full):
+        runs, groups_of_runs = _runs(kind)
+        counts = np.bincount(groups_of_runs, minlength=groups)
+        spans.append(np.stack([offset + np.cumsum(counts) - counts, counts], axis=1))
+        rows.append(runs)
+        offset += len(runs)
+    return TileLists(np.concatenate(rows).astype(np.int16), spans[0], spans[1], low)
+
+
+def _runs(kind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Join tiles that lie side by side; returns (x, y, length) of each run, shape (n, 3), and its group."""
+    edges = np.diff(kind.astype(np.int8), axis=2, prepend=0, append=0)
+    starts, ends = np.argwhere(edges == 1), np.argwhere(edges == -1)
+    return np.stack([starts[:, 2], starts[:, 1], ends[:, 2] - starts[:, 2]], axis=1), starts[:, 0]
+
+
+def _full_tiles(lattice: Lattice, centers: np.ndarray, half: np.ndarray, groups: int) -> tuple[np.ndarray, tuple[int, int]]:
+    """Return which tiles can hold something visible in each group of slabs, and the first tile's column."""
+    stack = lattice.stack
+    shear = np.asarray(lattice.shear) / SHEAR_UNIT
+    # All columns that lie on some plane of the stack.
+    ends = np.array([lattice.base(0), lattice.base(stack.count + 1)])
+    low = ends.min(axis=0) - 1
+    shape = (ends.max(axis=0) + np.asarray(lattice.size) + 1 - low) // TILE + 1
+    full = np.zeros((groups, int(shape[1]), int(shape[0])), dtype=bool)
+    if not len(centers):
+        return full, (int(low[0]), int(low[1]))
+    # One slab more on either side: a tile's values are first looked at before anything in it can be seen.
+    first = np.clip(np.floor((centers[:, 2] - half[2] - stack.z0) / stack.step).astype(int) - 1, 0, stack.count - 1)
+    last = np.clip(np.floor((centers[:, 2] + half[2] - stack.z0) / stack.step).astype(int) + 1, 0, stack.count - 1)
+    across = (centers[:, :2] - lattice.origin) / lattice.texel - low
+    reach = half[:2] / lattice.texel + 2
+    for step in range(int((last // GROUP - first // GROUP).max()) + 1):
+        group = first // GROUP + step
+        use = group <= last // GROUP
+        g, at = group[use], across[use]
+        begin = np.maximum(g * GROUP, first[use])[:, None] * shear
+        end = (np.minimum(g * GROUP + GROUP - 1, last[use]) + 1)[:, None] * shear
+        a = np.floor((at - reach + np.minimum(begin, end)) / TILE).astype(int)
+        b = np.floor((at + reach + np.maximum(begin, end)) / TILE).astype(int)
+        _mark(full, g, a, b)
+    return full, (int(low[0]), int(low[1]))
+
+
+def _mark(full: np.ndarray, group: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
+    """Set the tiles low..high (inclusive) of each block's group."""
+    top = np.array(full.shape[:0:-1]) - 1
+    low, high = np.clip(low, 0, top), np.clip(high, 0, top)
+    span = high - low
+    for dy in range(int(span[:, 1].max(initial=0)) + 1):
+        for dx in range(int(span[:, 0].max(initial=0)) + 1):
+            use = (span[:, 0] >= dx) & (span[:, 1] >= dy)
+            full[group[use], low[use, 1] + dy, low[use, 0] + dx] = True
