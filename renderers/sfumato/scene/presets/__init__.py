@@ -20,6 +20,10 @@ from .view import suggest_view
 __all__ = ["Preset", "preset", "presets_for", "suggest_clip", "suggest_transfer", "suggest_view"]
 
 
+#: A subject that fills less than this share of its volume is a tree of vessels.
+SPARSE = 0.025
+
+
 @remembered
 def presets_for(volume: Volume) -> tuple[Preset, ...]:
     """Return all presets that suit a volume, the best first."""
@@ -27,13 +31,19 @@ def presets_for(volume: Volume) -> tuple[Preset, ...]:
     if zero is not None:
         return _by_content(hounsfield_presets(zero), volume, zero)
     parts = levels(volume)
-    modality = volume.info.modality.upper()
-    own = {"MR": mr_presets, "US": ultrasound_presets}.get(modality)
-    return (
-        (*own(parts), *plain_presets(parts))
-        if own
-        else (*plain_presets(parts), *mr_presets(parts), *ultrasound_presets(parts))
-    )
+    plain = plain_presets(parts)
+    own = {"MR": mr_presets, "US": ultrasound_presets}.get(_modality(volume))
+    if own is not None:
+        return (*own(parts), *plain)
+    if float((thinned(volume) > parts.surface).mean()) < SPARSE:
+        plain = tuple(sorted(plain, key=lambda p: p.name != "Solid red"))
+    return (*plain, *mr_presets(parts), *ultrasound_presets(parts))
+
+
+def _modality(volume: Volume) -> str:
+    """Return the modality, or where it is not told the likeliest: what lies in a patient and is no CT is MR."""
+    told = volume.info.modality.upper()
+    return told or ("MR" if volume.info.orientation_known else "")
 
 
 def _by_content(presets: tuple[Preset, ...], volume: Volume, zero: float) -> tuple[Preset, ...]:

@@ -6,14 +6,14 @@ from ..transfer import TransferFunction
 from .preset import Preset
 
 RGB = tuple[float, float, float]
-SKIN: RGB = (0.72, 0.43, 0.29)
-MUSCLE: RGB = (0.46, 0.13, 0.085)
-BLOOD: RGB = (0.62, 0.075, 0.05)
-CARTILAGE: RGB = (0.72, 0.46, 0.30)
-BONE: RGB = (0.82, 0.72, 0.53)
-DENSE_BONE: RGB = (0.90, 0.84, 0.70)
-METAL: RGB = (0.75, 0.78, 0.80)
-LUNG: RGB = (0.72, 0.40, 0.36)
+SKIN: RGB = (0.52, 0.30, 0.20)
+MUSCLE: RGB = (0.42, 0.11, 0.07)
+BLOOD: RGB = (0.55, 0.06, 0.04)
+CARTILAGE: RGB = (0.52, 0.31, 0.20)
+BONE: RGB = (0.58, 0.49, 0.35)
+DENSE_BONE: RGB = (0.64, 0.58, 0.46)
+METAL: RGB = (0.55, 0.58, 0.60)
+LUNG: RGB = (0.60, 0.33, 0.29)
 
 Points = list[tuple[float, RGB, float]]
 

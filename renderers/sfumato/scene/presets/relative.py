@@ -9,10 +9,10 @@ from .values import Levels
 RGB = tuple[float, float, float]
 #: Surface, middle and brightest part of the subject.
 Palette = tuple[RGB, RGB, RGB]
-TISSUE: Palette = ((0.66, 0.42, 0.31), (0.76, 0.56, 0.43), (0.84, 0.74, 0.62))
-CLAY: Palette = ((0.60, 0.38, 0.24), (0.74, 0.58, 0.40), (0.86, 0.80, 0.68))
-AMBER: Palette = ((0.58, 0.30, 0.13), (0.74, 0.46, 0.22), (0.86, 0.68, 0.42))
-RED: Palette = ((0.60, 0.09, 0.06), (0.68, 0.16, 0.10), (0.80, 0.42, 0.30))
+TISSUE: Palette = ((0.48, 0.28, 0.20), (0.52, 0.37, 0.28), (0.60, 0.52, 0.42))
+CLAY: Palette = ((0.44, 0.25, 0.15), (0.52, 0.38, 0.25), (0.62, 0.56, 0.45))
+AMBER: Palette = ((0.44, 0.21, 0.08), (0.52, 0.31, 0.13), (0.62, 0.47, 0.28))
+RED: Palette = ((0.52, 0.09, 0.055), (0.56, 0.13, 0.08), (0.62, 0.30, 0.21))
 
 
 def surface(
@@ -35,7 +35,7 @@ def surface(
     return TransferFunction.from_points(
         [
             (at - half, low, 0.0),
-            (at + half, low, 0.8 * opacity),
+            (at + half, low, 0.55 * opacity),
             (inner, middle, opacity),
             (top, high, opacity),
         ],

@@ -25,7 +25,7 @@ REACH = 22.0
 #: Planes keep this far, in mm, from the body.
 MARGIN = 3.0
 #: Not more planes than these: the user wants some too.
-MAX_PLANES = 4
+MAX_PLANES = 5
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,9 @@ def suggest_clip(volume: Volume) -> tuple[ClipPlane, ...]:
         return ()
     x, y = (np.asarray(volume.direction)[:, i] for i in (0, 1))
     left, planes = scan.other, []
-    normals = [math.cos(a) * x + math.sin(a) * y for a in np.linspace(0, 2 * math.pi, 32, endpoint=False)]
+    normals = [math.cos(a) * x + math.sin(a) * y for a in np.linspace(0, 2 * math.pi, 48, endpoint=False)]
     bounds = [float((scan.body @ n).max()) + MARGIN for n in normals]
-    enough = max(4.0, 0.01 * len(scan.other))
+    enough = max(4.0, 0.003 * len(scan.other))
     while len(planes) < MAX_PLANES and len(left) >= enough:
         cut = [int((left @ n > b).sum()) for n, b in zip(normals, bounds, strict=True)]
         best = int(np.argmax(cut))

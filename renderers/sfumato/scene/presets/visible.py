@@ -16,23 +16,23 @@ SEEN = 0.1
 SPECK = 0.03
 
 
-def seen_points(volume: Volume, transfer: TransferFunction) -> np.ndarray | None:
-    """Return points, in world mm, around all that a function shows but specks; shape (n, 3); None if nothing."""
-    cells = without_specks(coarse_mask(volume, transfer))
-    index = np.argwhere(cells)
-    if not len(index):
-        return None
-    # The hull's corners lie on the outer cells: in each row of cells, the first and the last one.
+def seen_cells(volume: Volume, transfer: TransferFunction) -> np.ndarray:
+    """Return which cells of a coarse grid, shape (z, y, x), show something that is no speck."""
+    return _without_specks(_coarse_mask(volume, transfer))
+
+
+def outline(volume: Volume, cells: np.ndarray) -> np.ndarray:
+    """Return points, in world mm, on the outside of the marked cells of a grid; shape (n, 3)."""
     shell = cells & ~ndimage.binary_erosion(cells)
     index = np.argwhere(shell)[:, ::-1]
-    size = 1 / np.array(cells.shape[::-1])
+    # Not the cells' very corners: what is seen fills its outermost cell by half on average.
     corners = np.array([[i, j, k] for i in (0.15, 0.85) for j in (0.15, 0.85) for k in (0.15, 0.85)])
-    at = ((index[:, None, :] + corners) * size).reshape(-1, 3)
+    at = ((index[:, None, :] + corners) / np.array(cells.shape[::-1])).reshape(-1, 3)
     matrix = volume.world_from_texture
     return np.asarray(at @ matrix[:3, :3].T + matrix[:3, 3])
 
 
-def coarse_mask(volume: Volume, transfer: TransferFunction) -> np.ndarray:
+def _coarse_mask(volume: Volume, transfer: TransferFunction) -> np.ndarray:
     """Return which cells of a coarse grid, shape (z, y, x), show something."""
     low, high = volume.value_range
     table = np.linspace(low, high, 4096)
@@ -61,7 +61,7 @@ def _pooled(mask: np.ndarray, steps: tuple[int, ...]) -> np.ndarray:
     return np.asarray(share >= 0.25)
 
 
-def without_specks(mask: np.ndarray) -> np.ndarray:
+def _without_specks(mask: np.ndarray) -> np.ndarray:
     """Return a mask without the pieces that are much smaller than the largest one."""
     labels, count = ndimage.label(mask, structure=np.ones((3, 3, 3)))
     if count < 2:
