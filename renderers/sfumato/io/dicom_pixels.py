@@ -22,6 +22,7 @@ _CODECS = {
     "1.2.840.10008.1.2.4.80": "jpegls_decode",
     "1.2.840.10008.1.2.4.81": "jpegls_decode",
 }
+_RLE = "1.2.840.10008.1.2.5"
 #: No detector has more pixels; a header that says so would only fill the memory.
 _MAX_PIXELS = 1 << 28
 
@@ -78,7 +79,9 @@ class Decoder:
         elif str(syntax) in _CODECS:
             return self._by_imagecodecs(data_set, index, _CODECS[str(syntax)])
         pixels = need("pydicom.pixels", self._task)
-        return np.asarray(pixels.pixel_array(data_set, index=index))
+        # The quicker plug-in for run lengths panics on damaged data, and writes that to stderr.
+        plugin = "pydicom" if str(syntax) == _RLE else ""
+        return np.asarray(pixels.pixel_array(data_set, index=index, decoding_plugin=plugin))
 
     def _by_imagecodecs(self, data_set: Any, index: int, codec: str) -> np.ndarray:
         encaps, codecs = need("pydicom.encaps", self._task), need("imagecodecs", self._task)

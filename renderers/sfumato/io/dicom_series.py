@@ -7,6 +7,7 @@ that a localiser's three directions, or a vendor's mixture, become separate entr
 from __future__ import annotations
 
 import hashlib
+import struct
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +20,8 @@ from .reading import Task, need
 Numbers = tuple[float, ...]
 #: More files than this in one folder tree are not a scan but somebody's home directory.
 MAX_FILES = 50_000
+#: Group length, character set, image type, creation date, class, instance, study date.
+_FIRST_ELEMENTS = (0x00, 0x05, 0x08, 0x12, 0x16, 0x18, 0x20)
 #: Enhanced multi-frame objects keep a frame's place in one of these sequences (patient or probe coordinates).
 _PLACES = (
     ("PlanePositionSequence", "ImagePositionPatient"),
@@ -179,14 +182,19 @@ def is_dicom(path: Path) -> bool:
         return False
     if head[128:132] == b"DICM":
         return True
-    # Without a preamble the first element is a group length or an identifier of group 2 or 8.
-    return head[:4] in (
-        b"\x08\x00\x00\x00",
-        b"\x08\x00\x05\x00",
-        b"\x08\x00\x08\x00",
-        b"\x02\x00\x00\x00",
-        b"\x00\x08\x00\x05",
-    )
+    return _begins_bare(head)
+
+
+def _begins_bare(head: bytes) -> bool:
+    """Whether bytes begin like a data set without a preamble: a plausible element of group 2 or 8."""
+    if len(head) < 8:
+        return False
+    group, element, length = struct.unpack_from("<HHI", head)
+    if head[:4] == b"\x00\x08\x00\x05":  # big endian, character set first
+        return True
+    if group not in (2, 8) or element not in _FIRST_ELEMENTS:
+        return False
+    return head[4:6] in (b"UL", b"CS", b"UI", b"DA") or (2 <= length <= 128 and length % 2 == 0)
 
 
 def scan(files: Iterable[Path], task: Task) -> list[Series]:

@@ -66,6 +66,8 @@ def _run(reader: Any, task: Task) -> Any:
     # Errors of a reader inside the reader send no events: they are only written, so that is where we listen.
     before, window = core.vtkOutputWindow.GetInstance(), core.vtkStringOutputWindow()
     core.vtkOutputWindow.SetInstance(window)
+    logger, cutoff = core.vtkLogger, core.vtkLogger.GetCurrentVerbosityCutoff()
+    logger.SetStderrVerbosity(logger.VERBOSITY_OFF)
     try:
         reader.SetFileName(str(task.path))
         task.step(0.0, "Reading")
@@ -76,6 +78,7 @@ def _run(reader: Any, task: Task) -> Any:
         reader.Update()
     finally:
         core.vtkOutputWindow.SetInstance(before)
+        logger.SetStderrVerbosity(cutoff)
     task.step(0.0, "Reading")
     grid = reader.GetOutput()
     if "ERROR" in window.GetOutput().upper() or grid is None or grid.GetNumberOfPoints() == 0:

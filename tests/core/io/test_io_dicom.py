@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pydicom import dcmread
-from pydicom.dataset import Dataset
+from pydicom.dataset import Dataset, FileMetaDataset
 from pydicom.sequence import Sequence
 from pydicom.uid import JPEG2000Lossless, RLELossless
 
@@ -160,6 +160,16 @@ def test_one_file_brings_its_series(write_series) -> None:
     assert load(next(folder.iterdir())).key == load(folder).key
 
 
+def test_damaged_run_lengths(write_series) -> None:
+    folder = write_series(*stack(), syntax=RLELossless)
+    for path in folder.iterdir():
+        raw = bytearray(path.read_bytes())
+        raw[raw.rindex(b"\xfe\xff\x00\xe0") + 8] = 99  # number of segments
+        path.write_bytes(raw)
+    with pytest.raises(LoadError, match="cannot be decoded"):
+        load(folder)
+
+
 @pytest.mark.parametrize("syntax", [RLELossless, JPEG2000Lossless])
 def test_compressed(write_series, syntax: str) -> None:
     planes, positions = stack()
@@ -257,7 +267,7 @@ def test_without_preamble(write_series) -> None:
     folder = write_series(planes, positions)
     for path in folder.iterdir():
         data = dcmread(path)
-        data.file_meta = None
+        data.file_meta, data.preamble = FileMetaDataset(), None
         data.save_as(path, implicit_vr=True, little_endian=True)
         assert path.read_bytes()[128:132] != b"DICM"
     np.testing.assert_array_equal(load(folder).data, planes.astype(np.int16) - 1024)
