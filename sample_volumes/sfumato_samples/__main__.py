@@ -23,7 +23,8 @@ def main() -> int:
             "as in the catalogue" if made[item.name] == known.get(item.name) else "differs from the catalogue"
         )
         print(
-            f"{item.name:14} {seconds:5.2f} s  {data.shape} {data.dtype} {data.min()} .. {data.max()}  {state}"
+            f"{item.name:14} {seconds:5.2f} s  {data.shape} {data.dtype} {data.min()} .. {data.max()}",
+            state,
         )
     if "--write" in sys.argv[1:]:
         CHECKSUMS.write_text(json.dumps(made, indent=1) + "\n", encoding="utf-8")

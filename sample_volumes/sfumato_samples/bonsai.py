@@ -68,7 +68,7 @@ def _wood(canvas: Canvas) -> None:
         middle = (start + tip) / 2 + (0, 0, -4)
         canvas.chain(WOOD, np.array([start, middle, tip]), 2.8, 1.3)
         for turn in ((1, 0), (-1, 0), (0, 1), (0, -1), (0.7, 0.7), (-0.7, 0.7)):
-            twig = tip + (turn[0] * radii[0] * 0.75, turn[1] * radii[1] * 0.75, 3)
+            twig = np.add(tip, (turn[0] * radii[0] * 0.75, turn[1] * radii[1] * 0.75, 3))
             canvas.rod(WOOD, (middle + 2 * tip) / 3, twig, 1.2, 0.7)
 
 

@@ -37,7 +37,7 @@ class Canvas:
         self.edge = edge * grid.spacing
 
     def paint(self, value: float, body: Body, low: Point, high: Point) -> None:
-        """Paint a body, given by its distance in mm, over what is there; it lies inside the box low to high."""
+        """Paint a body, given by its distance in mm, over what is there; it lies in the box low to high."""
         margin = self.edge
         window, axes = self.grid.window(np.subtract(low, margin), np.add(high, margin))
         share = sdf.inside(body(axes), self.edge)

@@ -49,7 +49,7 @@ class Grid:
         return self.line(0)[None, None, :], self.line(1)[None, :, None], self.line(2)[:, None, None]
 
     def window(self, low: Point, high: Point) -> tuple[Box, Axes]:
-        """Return the part of the grid inside a box: its slices (z, y, x) and its broadcasting x, y, z in mm."""
+        """Return the part of the grid inside a box: its slices (z, y, x) and its x, y, z in mm."""
         spans = []
         for axis in range(3):
             start = int(np.floor((low[axis] - self.low[axis]) / self.spacing))

@@ -30,7 +30,7 @@ def generate() -> np.ndarray:
 
 
 def _chambers(canvas: Canvas) -> None:
-    """Paint the ventricle (apex up, to the probe), the atrium below, the valve's leaflets and their muscles."""
+    """Paint the ventricle (apex up, to the probe), the atrium below, the valve and its muscles."""
     canvas.ellipsoid(MUSCLE, (-2, 14, -46), (37, 38, 42))
     canvas.ellipsoid(MUSCLE, (0, 14, -84), (29, 30, 22))
     canvas.ellipsoid(BLOOD, (-2, 14, -47), (24, 27, 31))

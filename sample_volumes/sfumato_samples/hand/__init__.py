@@ -1,7 +1,7 @@
 """The hand: a computed tomography of a raised left hand, made by code; the face of the program.
 
 Layers, from outside: skin, subcutaneous fat, muscle and tendons, bones with cortex, spongy ends and marrow.
-Values are Hounsfield units of textbooks: air -1000, fat -100, muscle 60, spongy bone 200-400, cortex 900-1500.
+Values are textbooks' Hounsfield units: air -1000, fat -100, muscle 60, spongy bone 200-400, cortex 900-1500.
 """
 
 from __future__ import annotations
@@ -76,7 +76,10 @@ def _soft(grid: Grid, body: np.ndarray, depth: np.ndarray) -> np.ndarray:
 def _muscle(grid: Grid) -> np.ndarray:
     """Distance to the muscles: between the metacarpals, balls of thumb and little finger, forearm."""
     field = grid.full(5)
-    rods = [((-16, -14, 34), (-38, -33, 58), 13.0, 9.0), ((24, -10, 26), (32, -10, 76), 10.0, 7.0)]
+    rods: list[tuple[Any, Any, float, float]] = [
+        ((-16, -14, 34), (-38, -33, 58), 13.0, 9.0),
+        ((24, -10, 26), (32, -10, 76), 10.0, 7.0),
+    ]
     rods += [((-26, -16, 50), (-22, -5, 78), 8.0, 5.0)]
     for left, right in itertools.pairwise(FINGERS):
         start, end = np.add(left.base, right.base) / 2, np.add(left.head, right.head) / 2
@@ -91,7 +94,7 @@ def _muscle(grid: Grid) -> np.ndarray:
 
 
 def _tendons(grid: Grid) -> np.ndarray:
-    """Distance to the tendons: one before and one behind the bones of every finger, the palm's and the wrist's."""
+    """Distance to the tendons: before and behind the bones of every finger, in palm and wrist."""
     field = grid.full(5)
     rods = []
     for bone in long_bones():

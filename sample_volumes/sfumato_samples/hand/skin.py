@@ -11,7 +11,7 @@ from ..grid import Grid
 from ..sdf import Frame, bump, length, smooth_max, smooth_min
 from .pose import FINGERS, Bone, long_bones
 
-#: The middle finger's radius in mm: base joint, amid the proximal phalanx, its head, the middle one's head, tip.
+#: The middle finger's radius in mm: base joint, proximal phalanx, its head, the middle one's head, tip.
 FINGER_RADII = (10.4, 9.5, 9.3, 8.0, 6.6)
 THUMB_RADII = (12.8, 10.4, 10.6, 9.0, 7.4)
 Line = tuple[tuple[float, float], ...]
@@ -148,7 +148,7 @@ def _thumb(hand: Field, bones: list[Bone]) -> None:
 
 
 def add_relief(grid: Grid, skin: np.ndarray) -> None:
-    """Carve creases and raise tendons and veins, in place; fractions of a millimetre that light brings out."""
+    """Carve creases and raise tendons and veins, in place, by fractions of a millimetre."""
     for bone in long_bones():
         if bone.kind != "metacarpal":
             _joint_creases(grid, skin, bone)
@@ -235,7 +235,7 @@ def _joint_creases(grid: Grid, skin: np.ndarray, bone: Bone) -> None:
 def _rings(
     grid: Grid, skin: np.ndarray, bone: Bone, rings: tuple[tuple[float, float, float], ...], *, dorsal: bool
 ) -> None:
-    """Carve grooves (place along the bone, width, depth) across the front or back of a finger, fading at its sides."""
+    """Carve grooves (place along the bone, width, depth) across a finger, fading at its sides."""
     reach = 14.5 * bone.size
     middle = bone.frame.world(0, 0, sum(r[0] for r in rings) / len(rings))
     window, axes = grid.window(middle - reach, middle + reach)
