@@ -7,7 +7,10 @@ import shutil
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import sfumato
 
 #: The real data sets lie beside the repository, or where SFUMATO_DATA says.
 DATA = Path(os.environ.get("SFUMATO_DATA", Path(__file__).resolve().parents[2] / "shared" / "data"))
@@ -18,6 +21,7 @@ _HOME = "SFUMATO_TEST_HOME"
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--all", action="store_true", help="run the slow tests too (as SFUMATO_ALL=1)")
+    parser.addoption("--accept-images", action="store_true", help="expect the pictures drawn now")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -60,6 +64,28 @@ def _rank(item: pytest.Item) -> tuple[bool, int]:
 def data_dir() -> Path:
     """Folder of the real data sets; for tests marked ``real_data``."""
     return DATA
+
+
+@pytest.fixture(scope="session")
+def still_life() -> sfumato.Volume:
+    """Return a ball and two rods before a wall, 48^3 voxels of 1 mm."""
+    z, y, x = (np.mgrid[:48, :48, :48] + 0.5) / 48
+    ball = np.sqrt((x - 0.38) ** 2 + (y - 0.35) ** 2 + (z - 0.58) ** 2) - 0.17
+    upright = np.hypot(x - 0.72, y - 0.4) - 0.05
+    lying = np.hypot(y - 0.52, z - 0.24) - 0.05
+    wall = np.maximum(0.74 - y, y - 0.86)
+    parts = [(ball, 220), (upright, 160), (lying, 160), (wall, 100)]
+    voxels = np.max([value * np.clip(0.5 - 48 * distance, 0, 1) for distance, value in parts], axis=0)
+    return sfumato.Volume(voxels.astype(np.uint8))
+
+
+@pytest.fixture(scope="session")
+def still_life_colors() -> sfumato.TransferFunction:
+    """Return a transfer function for `still_life`: a pale wall, blue rods, a red ball that shows its skin."""
+    return sfumato.TransferFunction.from_points(
+        [(40, (0.9, 0.85, 0.75), 0.0), (90, (0.9, 0.85, 0.75), 0.7), (110, (0.9, 0.85, 0.75), 0.7),
+         (150, (0.3, 0.5, 0.9), 0.6), (170, (0.3, 0.5, 0.9), 0.6), (210, (0.9, 0.3, 0.2), 0.5)]
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="session")
