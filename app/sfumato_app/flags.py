@@ -247,14 +247,14 @@ def view_of(scene: Scene, view: str, aspect: float) -> Camera:
     aspect : float
         Width of the picture divided by its height.
     """
-    from sfumato.scene.presets.visible import seen_points
+    from sfumato.scene.presets.visible import outline, seen_cells
 
     volume, transfer, camera = scene.volume, scene.transfer, scene.camera
     if volume is None or transfer is None or camera is None:
         raise SceneError("camera", view, "a standard view needs a volume")
-    points = seen_points(volume, transfer)
+    cells = seen_cells(volume, transfer)
     return Camera.fit(
-        volume.corners() if points is None else points,
+        outline(volume, cells) if cells.any() else volume.corners(),
         view,
         aspect=aspect,
         view_angle=camera.view_angle,
