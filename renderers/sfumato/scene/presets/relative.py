@@ -9,8 +9,8 @@ from .values import Levels
 RGB = tuple[float, float, float]
 #: Surface, middle and brightest part of the subject.
 Palette = tuple[RGB, RGB, RGB]
-TISSUE: Palette = ((0.48, 0.28, 0.20), (0.52, 0.37, 0.28), (0.60, 0.52, 0.42))
-CLAY: Palette = ((0.44, 0.25, 0.15), (0.52, 0.38, 0.25), (0.62, 0.56, 0.45))
+TISSUE: Palette = ((0.48, 0.29, 0.20), (0.54, 0.40, 0.30), (0.62, 0.55, 0.46))
+CLAY: Palette = ((0.44, 0.27, 0.15), (0.54, 0.43, 0.28), (0.64, 0.60, 0.52))
 AMBER: Palette = ((0.44, 0.21, 0.08), (0.52, 0.31, 0.13), (0.62, 0.47, 0.28))
 RED: Palette = ((0.52, 0.09, 0.055), (0.56, 0.13, 0.08), (0.62, 0.30, 0.21))
 
@@ -35,8 +35,8 @@ def surface(
     return TransferFunction.from_points(
         [
             (at - half, low, 0.0),
-            (at + half, low, 0.55 * opacity),
-            (inner, middle, opacity),
+            (at + half, low, 0.3 * opacity),
+            (inner, middle, 0.8 * opacity),
             (top, high, opacity),
         ],
         name=name,

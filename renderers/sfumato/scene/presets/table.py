@@ -122,7 +122,7 @@ def _large(mask: np.ndarray, cell: np.ndarray, share: float = 0.0) -> np.ndarray
 
 
 def _world(volume: Volume, mask: np.ndarray) -> np.ndarray:
-    steps = np.array([max(1, n // m) for n, m in zip(volume.data.shape, mask.shape, strict=True)])
+    steps = np.array([-(-n // m) for n, m in zip(volume.data.shape, mask.shape, strict=True)])
     index = (np.argwhere(mask) * steps)[:, ::-1] * np.asarray(volume.spacing)
     return np.asarray(index @ np.asarray(volume.direction).T + np.asarray(volume.origin))
 
