@@ -28,13 +28,13 @@ def ellipsoid(shape: tuple[int, int, int], center: tuple[float, ...], radii: tup
 
 def patient(zero: int = 0, table: bool = True, front: int = -1) -> np.ndarray:
     """A trunk of soft tissue with a spine, on a thin curved table behind it; 4 mm voxels; HU + zero."""
-    shape = (40, 100, 120)
+    shape = (40, 100, 163)
     z, y, x = np.meshgrid(*(np.arange(n) for n in shape), indexing="ij")
     data = np.full(shape, -1000, dtype=np.int16)
-    data[ellipsoid(shape, (20, 45, 60), (60, 25, 40)) < 1] = 40
-    data[(x - 60) ** 2 + (y - 60) ** 2 < 25] = 700
+    data[ellipsoid(shape, (20, 45, 80), (60, 25, 40)) < 1] = 40
+    data[(x - 80) ** 2 + (y - 60) ** 2 < 25] = 700
     if table:
-        arc = np.hypot(x - 60, (y + 60) * 0.9)
+        arc = np.hypot(x - 80, (y + 60) * 0.9)
         data[(np.abs(arc - 130) < 1.2) & (y > 75)] = 150
     if front > 0:
         data = data[:, ::-1]
