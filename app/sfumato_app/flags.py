@@ -253,8 +253,12 @@ def view_of(scene: Scene, view: str, aspect: float) -> Camera:
     if volume is None or transfer is None or camera is None:
         raise SceneError("camera", view, "a standard view needs a volume")
     cells = seen_cells(volume, transfer)
+    points = outline(volume, cells) if cells.any() else volume.corners()
+    for plane in scene.clip:
+        kept = points @ plane.normal >= np.dot(plane.point, plane.normal)
+        points = points[kept] if plane.enabled and kept.any() else points
     return Camera.fit(
-        outline(volume, cells) if cells.any() else volume.corners(),
+        points,
         view,
         aspect=aspect,
         view_angle=camera.view_angle,
