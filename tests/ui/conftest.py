@@ -57,7 +57,7 @@ def make_window(qapp: QApplication) -> Iterator[MakeWindow]:
     """Return a maker of windows that are shown, active and closed after the test."""
     made: list[MainWindow] = []
 
-    def make(scene: Scene | None = None, size: tuple[int, int] = (900, 700)) -> MainWindow:
+    def make(scene: Scene | None = None, size: tuple[int, int] = (760, 600)) -> MainWindow:
         window = MainWindow(Document(scene) if scene is not None else None)
         made.append(window)
         window.resize(*size)
@@ -101,16 +101,29 @@ class Hand:
         flat = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
         return flat[:, : 4 * image.width()].reshape(image.height(), image.width(), 4).astype(int)
 
-    def drag(self, widget: QWidget, start: QPoint, end: QPoint, *, steps: int = 8, button: Qt.MouseButton = LEFT,
-             keys: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier) -> None:  # fmt: skip
+    def drag(
+        self,
+        widget: QWidget,
+        start: QPoint,
+        end: QPoint,
+        *,
+        steps: int = 8,
+        button: Qt.MouseButton = LEFT,
+        keys: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier,
+    ) -> None:
         """Press at one place, move in steps, release at another."""
         self.qtbot.mousePress(widget, button, keys, start)
         for i in range(1, steps + 1):
             at = start + (end - start) * (i / steps)
             # QTest's mouseMove knows no modifiers: the event itself does.
             event = QMouseEvent(
-                QEvent.Type.MouseMove, QPointF(at), QPointF(widget.mapToGlobal(at)), Qt.MouseButton.NoButton, button, keys
-            )  # fmt: skip
+                QEvent.Type.MouseMove,
+                QPointF(at),
+                QPointF(widget.mapToGlobal(at)),
+                Qt.MouseButton.NoButton,
+                button,
+                keys,
+            )
             QApplication.sendEvent(widget, event)
             self.qtbot.wait(5)
         self.qtbot.mouseRelease(widget, button, keys, end)

@@ -12,7 +12,7 @@ from pydicom.uid import CTImageStorage, ExplicitVRLittleEndian, generate_uid
 from pytestqt.qtbot import QtBot
 from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDragEnterEvent, QDropEvent
-from qtpy.QtWidgets import QApplication, QDialog, QFileDialog, QLineEdit, QMessageBox, QPushButton
+from qtpy.QtWidgets import QApplication, QDialog, QDialogButtonBox, QFileDialog, QMessageBox, QPushButton
 
 from sfumato import Scene
 from sfumato.export.png import open_png
@@ -71,11 +71,11 @@ def dialog_of(window: MainWindow, qtbot: QtBot, kind: type[QDialog]) -> Any:
 
 
 def type_file_name(dialog: QFileDialog, qtbot: QtBot, path: Path) -> None:
-    """Type a path into a file dialog and press Enter."""
-    line = dialog.findChild(QLineEdit)
-    line.selectAll()
-    qtbot.keyClicks(line, str(path))
-    qtbot.keyClick(line, Qt.Key.Key_Return)
+    """Name a file in a file dialog and press Save."""
+    # Typed letters would open the list of proposals, a window of its own that takes the next click.
+    dialog.selectFile(str(path))
+    accept = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Save)
+    qtbot.mouseClick(accept, Qt.MouseButton.LeftButton)
 
 
 @pytest.fixture(autouse=True)
@@ -158,7 +158,8 @@ def test_saving_the_picture(window: MainWindow, hand: Any, qtbot: QtBot, tmp_pat
     qtbot.keyClick(dialog, Qt.Key.Key_Return)
     target = tmp_path / "picture.png"
     type_file_name(dialog_of(window, qtbot, QFileDialog), qtbot, target)
-    qtbot.waitUntil(lambda: "Saved" in window.messages.text, timeout=90_000)
+    qtbot.waitUntil(lambda: window.messages.kind in ("notice", "error"), timeout=90_000)
+    assert window.messages.text == f"Saved {target}"
     with Image.open(target) as picture:
         assert picture.size == (320, 200)
         assert np.asarray(picture)[..., 3].min() == 255, "what is saved is what is seen, the grey too"
@@ -179,15 +180,13 @@ def test_saving_the_scene_and_opening_it_again(
 ) -> None:
     np.save(tmp_path / "ball.npy", window.editor.scene.volume.data)
     drop(window, tmp_path / "ball.npy")
-    qtbot.waitUntil(
-        lambda: window.editor.scene.volume.info.path.endswith("ball.npy") and window.messages.kind == ""
-    )
+    qtbot.waitUntil(lambda: window.editor.scene.volume.info.path == str(tmp_path / "ball.npy"))
     window.editor.change_light("Move the light", tilt=55.0)
     assert window.isWindowModified()
     hand.press(Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
     target = tmp_path / "study.sfumato"
     type_file_name(dialog_of(window, qtbot, QFileDialog), qtbot, target)
-    assert target.exists()
+    qtbot.waitUntil(target.exists)
     assert not window.isWindowModified()
     assert "study" in window.windowTitle()
     saved = window.editor.scene

@@ -57,6 +57,9 @@ def test_typing_a_number_and_resetting_it(window: MainWindow, hand: Any, qtbot: 
     qtbot.keyClicks(row.number, "52")
     qtbot.keyClick(row.number, Qt.Key.Key_Return)
     assert window.editor.scene.lights[0].tilt == 52
+    qtbot.keyClick(row.number, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert window.editor.scene.lights[0].tilt == 37, "Ctrl+Z is the document's, even in a number"
+    window.editor.redo()
     assert row.reset.isVisible()
     qtbot.mouseClick(row.reset, Qt.MouseButton.LeftButton)
     assert window.editor.scene.lights[0].tilt == 37

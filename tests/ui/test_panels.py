@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 from pytestqt.qtbot import QtBot
 from qtpy.QtCore import Qt
@@ -17,13 +15,13 @@ from sfumato_ui.window import MainWindow
 
 
 @pytest.fixture(params=sorted(THEMES))
-def walked(request: pytest.FixtureRequest, make_window: object, ball_scene: Scene) -> Iterator[MainWindow]:
+def walked(request: pytest.FixtureRequest, make_window: object, ball_scene: Scene) -> MainWindow:
     """A window in each theme, with all sections open."""
     window: MainWindow = make_window(ball_scene, size=(1280, 720))  # type: ignore[operator]
     window.set_theme(request.param)
     for section in (window.light_page.own, window.light_page.more, window.view_page.more):
         section.set_open(True)
-    yield window
+    return window
 
 
 def controls_of(window: MainWindow, tab: int) -> list[QWidget]:

@@ -142,7 +142,7 @@ def test_holding_b_shows_the_unlit_picture(window: MainWindow, hand: Any, qtbot:
 
 
 def test_the_picture_follows_the_windows_size(window: MainWindow, hand: Any) -> None:
-    window.resize(820, 560)
+    window.resize(700, 520)
     hand.wait_for_picture()
     image = window.viewport.picture.image
     assert (image.width(), image.height()) == window.viewport.pixel_size

@@ -155,8 +155,11 @@ def fitted(camera: Camera, whole: Camera, view: str = "") -> Camera:
     half = picture_half_height(whole)
     arm = np.subtract(camera.position, camera.focal_point)
     placed = replace(
-        camera, focal_point=whole.focal_point, position=_vec(np.asarray(whole.focal_point) + arm), parallel_scale=half,
+        camera,
+        focal_point=whole.focal_point,
+        position=_vec(np.asarray(whole.focal_point) + arm),
+        parallel_scale=half,
         window_center=(0.0, 0.0),
-    )  # fmt: skip
+    )
     placed = _at_distance(placed, half / math.tan(math.radians(camera.view_angle) / 2))
     return from_side(placed, view) if view else placed

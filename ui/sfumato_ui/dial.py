@@ -58,9 +58,10 @@ class LightDial(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleName("Light dial")
         self.setToolTip(
-            "<p>Drag the lamp to place it; the ring outside is behind the subject. Drag the small square for softer "
-            "or harder shadows.</p><p>Arrow keys turn and tilt by 1°, with Shift by 10°; the wheel changes the "
-            "intensity.</p>"
+            "<p>Drag the lamp to place it; the ring outside is behind the subject. Drag the "
+            "small square for softer or harder shadows.</p><p>Arrow keys turn and tilt by 1°, "
+            "with Shift by 10°; the wheel "
+            "changes the intensity.</p>"
         )
         editor.changed.connect(self._on_changed)
         editor.light_selected.connect(self.refresh)
@@ -78,9 +79,8 @@ class LightDial(QWidget):
         """Show the scene's lamps."""
         light = self._editor.light
         if light is not None:
-            self.setAccessibleDescription(
-                f"{light.name}: tilt {light.tilt:.0f}°, rotation {light.rotation % 360:.0f}°, aperture {light.aperture:.0f}°"
-            )
+            place = f"tilt {light.tilt:.0f}°, rotation {light.rotation % 360:.0f}°"
+            self.setAccessibleDescription(f"{light.name}: {place}, aperture {light.aperture:.0f}°")
         self.setEnabled(light is not None)
         self.update()
 
@@ -266,7 +266,7 @@ class LightDial(QWidget):
 
 
 def stepped_tilt(light: Light, step: float) -> float:
-    """Return a light's tilt after a nudge in degrees, across the band that its aperture forbids if need be."""
+    """Return a light's tilt after a nudge in degrees, if need be across the band its aperture forbids."""
     wanted = light.tilt + step
     tilt = nearest_possible_tilt(wanted, light.aperture)
     (_, front), (rear, _) = light_moves.tilt_ranges(light.aperture)

@@ -40,7 +40,7 @@ class SeriesDialog(QDialog):
             row.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
             self.list.addTopLevelItem(row)
         largest = max(range(len(series)), key=lambda i: series[i].count)
-        self.list.setCurrentItem(self.list.topLevelItem(largest))
+        self.list.setCurrentIndex(self.list.model().index(largest, 0))
         self.list.itemActivated.connect(lambda item, column: self.accept())
         buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel

@@ -127,7 +127,7 @@ class Files(QObject):
         return answer == "discard" or (answer == "save" and self.save_scene(wait=True))
 
     def save_scene(self, wait: bool = False) -> bool:
-        """Save to the scene's file, or ask for one; tells whether it was saved (if it could wait for that)."""
+        """Save to the scene's file, or ask for one; tells whether it was saved, if it is to wait for that."""
         if self.scene_path:
             return self.save_scene_as(self.scene_path)
         start = str(Path.home() / f"{self.name or 'scene'}{SCENE_SUFFIX}")
@@ -186,7 +186,7 @@ class Files(QObject):
         if transparent:
             drawn = scene.with_(background=(0.0, 0.0, 0.0, 0.0))
         elif scene.background[3] == 0:
-            # What is saved is what is seen: without a background of its own, the picture stands on the window's grey.
+            # What is saved is what is seen: without a background, the picture stands on the window's grey.
             drawn = scene.with_(background=(_GREY, _GREY, _GREY, 1.0))
         else:
             drawn = scene

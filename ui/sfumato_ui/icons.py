@@ -33,6 +33,7 @@ _GLYPHS = {
 def icon(name: str, theme: Theme, color: str = "") -> QIcon:
     """Return an icon in the theme's text colour, in the colour of checked buttons while checked."""
     base = color or theme.text
-    return qtawesome.icon(
+    made: QIcon = qtawesome.icon(
         _GLYPHS[name], color=base, color_on=color or theme.on_accent, color_disabled=theme.border
     )
+    return made

@@ -69,9 +69,9 @@ class LampRow(QWidget):
             font.setStrikeOut(not light.enabled)
             chip.setFont(font)
             chip.setChecked(i == self._editor.selected)
-        light = self._editor.light
-        self.mute.setChecked(light is not None and not light.enabled)
-        self.mute.setEnabled(light is not None)
+        chosen = self._editor.light
+        self.mute.setChecked(chosen is not None and not chosen.enabled)
+        self.mute.setEnabled(chosen is not None)
         self.remove.setEnabled(len(lights) > 1)
         self.remove.setToolTip(
             "Remove the lamp" if len(lights) > 1 else "The last lamp stays; mute it instead"

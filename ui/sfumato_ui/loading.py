@@ -67,18 +67,23 @@ class Loader(QObject):
         except Exception as error:
             # A reader that was stopped ends with an error of its own; what counts is who asked for it.
             if stop.is_set():
-                self.cancelled.emit()
+                self._tell_cancelled(stop)
             else:
                 self.failed.emit(one_line(error))
             return
         if stop.is_set():
-            self.cancelled.emit()
+            self._tell_cancelled(stop)
         else:
             self.loaded.emit(scene, path if path.endswith(SCENE_SUFFIX) else "")
 
+    def _tell_cancelled(self, stop: threading.Event) -> None:
+        """Tell that the user gave up; not if something else is being opened instead."""
+        if stop is self._stop:
+            self.cancelled.emit()
+
 
 def read_scene(path: str, series: Any = None, progress: Any = None, cancel: Any = None) -> Scene:
-    """Read a scene file, a picture that carries its scene, or a volume as a new scene with a fitting transfer function and view.
+    """Read a scene file, a picture that carries its scene, or a volume as a new, fitting scene.
 
     What is slow to compute once (content hash, histogram, range) is computed here, off the window's thread.
     """

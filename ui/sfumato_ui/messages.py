@@ -31,6 +31,7 @@ class MessageBar(QFrame):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
+        self._over = parent
         self.setObjectName("MessageBar")
         self.kind = ""
         self._icon = QLabel()
@@ -95,7 +96,7 @@ class MessageBar(QFrame):
 
     def place(self) -> None:
         """Take the width that the picture has, up to a readable line."""
-        parent = self.parentWidget()
+        parent = self._over
         width = min(620, parent.width() - 24)
         self.setFixedWidth(max(120, width))
         self._text.setFixedWidth(max(60, width - 60 - (90 if self.kind == "progress" else 40)))

@@ -24,7 +24,7 @@ class Section(QWidget):
         self.header.setProperty("section", True)
         self.header.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.body = QWidget()
-        inside = QVBoxLayout(self.body)
+        self._inside = inside = QVBoxLayout(self.body)
         inside.setContentsMargins(0, 4, 0, 4)
         inside.setSpacing(6)
         outside = QVBoxLayout(self)
@@ -34,7 +34,7 @@ class Section(QWidget):
         outside.addWidget(self.body)
         self.set_title(title)
         self.header.toggled.connect(self._on_toggled)
-        self.set_open(settings().value(self._key, False, type=bool))
+        self.set_open(bool(settings().value(self._key, False, type=bool)))
         self._on_toggled(self.header.isChecked(), remember=False)
 
     def set_title(self, title: str) -> None:
@@ -48,16 +48,15 @@ class Section(QWidget):
 
     def clear(self) -> None:
         """Remove what is in it."""
-        layout = self.body.layout()
-        while layout.count():
-            widget = layout.takeAt(0).widget()
+        while self._inside.count():
+            widget = self._inside.takeAt(0).widget()
             if widget is not None:
                 widget.hide()
                 widget.deleteLater()
 
     def add(self, widget: QWidget) -> None:
         """Put a widget at its end."""
-        self.body.layout().addWidget(widget)
+        self._inside.addWidget(widget)
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""

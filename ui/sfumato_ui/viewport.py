@@ -200,8 +200,11 @@ class Viewport(QWidget):
         """Orbit by arrow keys (move the lamp with Shift), zoom by + and -."""
         camera, key = self._editor.scene.camera, Qt.Key(event.key())
         turn = {
-            Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, 1), Qt.Key.Key_Down: (0, -1),
-        }.get(key)  # fmt: skip
+            Qt.Key.Key_Left: (-1, 0),
+            Qt.Key.Key_Right: (1, 0),
+            Qt.Key.Key_Up: (0, 1),
+            Qt.Key.Key_Down: (0, -1),
+        }.get(key)
         scale = {
             Qt.Key.Key_Plus: ZOOM_STEP,
             Qt.Key.Key_Equal: ZOOM_STEP,

@@ -30,6 +30,7 @@ from .bars import ToolStrip, TopBar
 from .driver import ViewDriver
 from .editing import Editor
 from .files import Files
+from .loading import Loader
 from .messages import MessageBar
 from .panels.light import LightPage
 from .panels.material import MaterialPage
@@ -69,6 +70,7 @@ class MainWindow(QMainWindow):
         self.light_page, self.material_page = LightPage(self.editor), MaterialPage(self.editor)
         self.view_page = ViewPage(self.editor)
         self._closed = False
+        self._render_failed = False
         self._lay_out()
         self._connect()
         self._add_shortcuts()
@@ -130,14 +132,20 @@ class MainWindow(QMainWindow):
 
     def _add_shortcuts(self) -> None:
         for keys, act in {
-            "Ctrl+O": self.files.ask_to_open, "Ctrl+Shift+O": self.files.ask_to_open_folder,
-            "Ctrl+S": lambda: self.files.save_scene(), "Ctrl+E": self.files.ask_to_save_picture,
-            "Ctrl+Z": self.editor.undo, "Ctrl+Shift+Z": self.editor.redo, "Ctrl+Y": self.editor.redo,
-            "Home": lambda: self.look(""), "Esc": lambda: self.strip.choose("orbit"), "L": lambda: self.strip.choose("light"),
-        }.items():  # fmt: skip
-            QShortcut(QKeySequence(keys), self, activated=act)
+            "Ctrl+O": self.files.ask_to_open,
+            "Ctrl+Shift+O": self.files.ask_to_open_folder,
+            "Ctrl+S": lambda: self.files.save_scene(),
+            "Ctrl+E": self.files.ask_to_save_picture,
+            "Ctrl+Z": self.editor.undo,
+            "Ctrl+Shift+Z": self.editor.redo,
+            "Ctrl+Y": self.editor.redo,
+            "Home": lambda: self.look(""),
+            "Esc": lambda: self.strip.choose("orbit"),
+            "L": lambda: self.strip.choose("light"),
+        }.items():
+            QShortcut(QKeySequence(keys), self).activated.connect(act)
         for i, view in enumerate(STANDARD_VIEWS):
-            QShortcut(QKeySequence(str(i + 1)), self, activated=lambda view=view: self.look(view))
+            QShortcut(QKeySequence(str(i + 1)), self).activated.connect(lambda view=view: self.look(view))
 
     def _restore(self) -> None:
         kept = settings()
@@ -164,10 +172,13 @@ class MainWindow(QMainWindow):
         self.setWindowModified(self.editor.document.modified)
 
     def _on_picture(self, picture: Picture) -> None:
-        self.messages.clear("render error")
+        if self._render_failed:
+            self._render_failed = False
+            self.messages.clear("error")
         self.status.show_picture(picture)
 
     def _on_render_failed(self, message: str) -> None:
+        self._render_failed = True
         self.messages.show_error(
             f"{message}. The last good picture stays; undo, or choose another technique."
         )
@@ -264,13 +275,15 @@ class MainWindow(QMainWindow):
         self.editor.close()
         self.files.loader.cancel()
         self.worker.ask_to_stop()
-        _wait_for(self.worker)
+        _wait_for(self.worker, self.files.loader)
+        self.files.loader.blockSignals(True)
+        self.worker.blockSignals(True)
         event.accept()
 
 
-def _wait_for(worker: RenderWorker) -> None:
-    """Go on with events until the render thread has ended, for a bounded time."""
+def _wait_for(worker: RenderWorker, loader: Loader) -> None:
+    """Go on with events until both threads have ended, for a bounded time."""
     until = time.monotonic() + CLOSE_SECONDS
-    while worker.alive and time.monotonic() < until:
+    while (worker.alive or loader.alive) and time.monotonic() < until:
         QApplication.processEvents(QEventLoop.ProcessEventsFlag.ExcludeUserInputEvents, 20)
         time.sleep(0.005)

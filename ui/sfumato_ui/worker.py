@@ -32,6 +32,8 @@ DRAG_LADDER = (
 )
 #: A drag frame slower than this, in seconds, makes the next one coarser; one quicker than a fifth, finer.
 DRAG_SECONDS = 0.25
+#: A drag's frame that takes longer than this, in seconds, shows its progress.
+SLOW_SECONDS = 0.5
 
 
 @dataclass(frozen=True)
@@ -169,13 +171,14 @@ class RenderWorker(QObject):
     def _draw(self, renderer: Any, request: ViewRequest) -> None:
         quality = DRAG_LADDER[self._rung] if request.interactive else FULL
         with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
-            for index in range(1 if request.interactive else STILL_FRAMES):
+            count = 1 if request.interactive else STILL_FRAMES
+            for index in range(count):
                 started = time.perf_counter()
                 for done in accumulation.add_frame():
                     if self._stopping or self._outdated(request):
                         return
-                    if not request.interactive:
-                        self.progress.emit((index + done) / STILL_FRAMES)
+                    if not request.interactive or time.perf_counter() - started > SLOW_SECONDS:
+                        self.progress.emit((index + done) / count)
                 seconds = time.perf_counter() - started
                 self.picture.emit(_picture(accumulation, request, seconds))
                 if request.interactive:
@@ -183,11 +186,14 @@ class RenderWorker(QObject):
         self.progress.emit(1.0)
 
     def _outdated(self, request: ViewRequest) -> bool:
-        """Tell whether to drop the work for a request: a drag's frame is dropped only for other data."""
+        """Tell whether to drop the work for a request: a drag's frame only for other data or technique."""
         newer = self._view
         if newer is None:
             return self._save is not None and not request.interactive
-        return not request.interactive or newer.scene.volume is not request.scene.volume
+        if not request.interactive:
+            return True
+        old, new = request.scene, newer.scene
+        return new.volume is not old.volume or type(new.technique) is not type(old.technique)
 
     def _choose_rung(self, seconds: float) -> None:
         if seconds > DRAG_SECONDS:

@@ -34,7 +34,7 @@ class LightPage(Page):
         self.tilt = self._slider("tilt", "Tilt", ((0, 69), (111, 180)))
         self.rotation = self._slider("rotation", "Rotation", ((0, 360),))
         self.aperture = self._slider(
-            "aperture", "Softness", ((light_moves.MIN_APERTURE, light_moves.MAX_APERTURE),)
+            "aperture", "Softness (aperture)", ((light_moves.MIN_APERTURE, light_moves.MAX_APERTURE),)
         )
         self.intensity = self._slider(
             "intensity", "Intensity", ((0, 3),), decimals=2, step=0.05, limits=(0, 100)
@@ -44,7 +44,7 @@ class LightPage(Page):
         self.more = Section("More", "light_more")
         self.color = ColorButton("Colour of the lamp")
         self.controls: list[ParamControl] = []
-        self._technique_type: type | None = None
+        self._technique_type: object = None
         for widget in (self.lamps, self.dial, self.tilt, self.rotation, self.aperture, self.intensity):
             self.add(widget)
         self.add(_row("Technique", self.technique))
@@ -81,8 +81,11 @@ class LightPage(Page):
             lambda v: self._set(self.intensity, "Change the intensity", "intensity", v)
         )
         for slider, label in (
-            (self.tilt, MOVE), (self.rotation, MOVE), (self.aperture, SOFTEN), (self.intensity, "Change the intensity"),
-        ):  # fmt: skip
+            (self.tilt, MOVE),
+            (self.rotation, MOVE),
+            (self.aperture, SOFTEN),
+            (self.intensity, "Change the intensity"),
+        ):
             slider.drag_started.connect(lambda label=label: editor.begin(label))
             slider.drag_finished.connect(editor.end)
         self.technique.activated.connect(self._choose_technique)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 from qtpy.QtCore import QSize, Qt
 from qtpy.QtGui import QWheelEvent
 from qtpy.QtWidgets import QListWidget, QListWidgetItem
 
 from sfumato import Scene, TransferFunction
-from sfumato.scene import presets
+from sfumato.scene.presets import Preset, presets_for
 
 from ..editing import Editor
 from ..sliders import LabelledSlider
@@ -46,13 +45,13 @@ class MaterialPage(Page):
     def __init__(self, editor: Editor) -> None:
         super().__init__()
         self._editor = editor
-        self._presets: tuple[Any, ...] = ()
+        self._presets: tuple[Preset, ...] = ()
         self._volume: object = None
         self.preview = TransferPreview()
         self.presets = PresetList()
         self.density = LabelledSlider(
             "Density", ((1 / 16, 16.0),), 1.0, unit="×", decimals=2, step=0.05, limits=(0.01, 100), log=True,
-            tip="How much light each millimetre stops, relative to the preset: thinner shows what is inside, denser the surface",
+            tip="How much light each millimetre stops: thin shows what is inside, dense the surface",
         )  # fmt: skip
         self.add_heading("Presets")
         self.add(self.presets)
@@ -72,11 +71,7 @@ class MaterialPage(Page):
         scene = self._editor.scene
         if scene.volume is not self._volume:
             self._volume = scene.volume
-            self._presets = (
-                tuple(getattr(presets, "presets_for", lambda volume: ())(scene.volume))
-                if scene.volume is not None
-                else ()
-            )
+            self._presets = presets_for(scene.volume) if scene.volume is not None else ()
             self._fill()
         self.setEnabled(scene.volume is not None)
         self.preview.show_scene(scene)

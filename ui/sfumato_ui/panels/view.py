@@ -23,7 +23,7 @@ from ..section import Section
 from ..theme import THEMES, current_theme
 from .page import Page
 
-#: Linear RGBA by name; without a background the window shows its grey, and a saved picture can be transparent.
+#: Linear RGBA by name; without a background the window shows its grey.
 BACKGROUNDS = {
     "None": (0.0, 0.0, 0.0, 0.0),
     "Black": (0.0, 0.0, 0.0, 1.0),
