@@ -23,7 +23,8 @@ from typing import TYPE_CHECKING
 from ..errors import LoadError, SfumatoError
 from ..scene import Volume
 from . import dicom, formats, raw
-from .dicom_series import SeriesInfo, is_dicom
+from .dicom_header import is_dicom
+from .dicom_series import SeriesInfo
 from .finish import finish
 from .formats import SUPPORTED
 from .raw import RawGuess

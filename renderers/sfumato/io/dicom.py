@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from .deskew import even, shift_plane
+from .dicom_header import Frame, is_dicom, read_header
 from .dicom_pixels import Decoder, to_units, unit_dtype
-from .dicom_series import Frame, Series, SeriesInfo, files_below, info_of, is_dicom, read_header, scan
+from .dicom_series import Series, SeriesInfo, files_below, info_of, scan
 from .reading import Reading, Source, Task, pick_frame
 
 #: Slices that wander by less than this many pixels over the whole stack count as straight.

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .dicom_series import Frame, Series
+from .dicom_header import Frame
+from .dicom_series import Series
 from .reading import Task, need
 from .voxels import one_value
 

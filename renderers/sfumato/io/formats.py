@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from . import dicom, itk, nifti, npy, raw, slc, tiff, vtk, zarr
-from .dicom_series import is_dicom
+from .dicom_header import is_dicom
 from .reading import Reading, Task
 
 SUPPORTED = (
