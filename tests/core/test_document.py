@@ -38,7 +38,11 @@ def test_undo_and_redo(document: Document) -> None:
     document.change("Brighter still", exposure=2.0)
     assert document.undo_label == "Brighter still"
     document.undo()
-    assert (exposure(document), document.undo_label, document.redo_label) == (1.0, "Brighter", "Brighter still")
+    assert (exposure(document), document.undo_label, document.redo_label) == (
+        1.0,
+        "Brighter",
+        "Brighter still",
+    )
     document.undo()
     assert document.scene is first
     document.undo()

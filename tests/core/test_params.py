@@ -92,7 +92,9 @@ def test_choices_are_named(value: Any, hint: str) -> None:
         place=st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)),
         kind=st.sampled_from("ab"),
         limit=st.none() | st.floats(0, 1e9),
-        many=st.lists(st.builds(Inner, name=st.text(max_size=5), size=st.floats(0.1, 10)), max_size=3).map(tuple),
+        many=st.lists(st.builds(Inner, name=st.text(max_size=5), size=st.floats(0.1, 10)), max_size=3).map(
+            tuple
+        ),
         on=st.booleans(),
     )
 )

@@ -29,7 +29,9 @@ def test_points_are_sorted_and_may_make_steps() -> None:
 
 @given(st.floats(0, 1), st.floats(0.05, 20), st.integers(1, 50))
 @settings(max_examples=60, deadline=None)
-def test_opacity_of_a_unit_distance_does_not_depend_on_the_steps(alpha: float, unit: float, steps: int) -> None:
+def test_opacity_of_a_unit_distance_does_not_depend_on_the_steps(
+    alpha: float, unit: float, steps: int
+) -> None:
     tau = float(RAMP.extinction(np.array(alpha), unit))
     together = 1 - np.exp(-tau * unit / steps) ** steps
     assert together == pytest.approx(min(alpha, MAX_OPACITY), abs=1e-9)
@@ -100,4 +102,4 @@ def test_regions_are_laid_over_each_other() -> None:
 
 def test_equal_functions_are_one_key() -> None:
     assert hash(TransferFunction((TransferPoint(),))) == hash(TransferFunction((TransferPoint(),)))
-    assert RAMP != RAMP.rescaled(1, 1)
+    assert RAMP.rescaled(1, 1) != RAMP

@@ -50,7 +50,9 @@ def test_technique(
 
 
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.json")), ids=lambda p: p.stem)
-def test_scene(path: Path, check_picture: Check, still_life: Volume, still_life_colors: TransferFunction) -> None:
+def test_scene(
+    path: Path, check_picture: Check, still_life: Volume, still_life_colors: TransferFunction
+) -> None:
     scene = load_scene(path.stem, still_life, still_life_colors)
     check_picture(f"scene-{path.stem}", sfumato.render(scene, (SIDE, SIDE)), MEAN, WORST)
 

@@ -24,7 +24,8 @@ PORTABLE = {
     "MESA_GL_VERSION_OVERRIDE": "3.3",
     "MESA_GLSL_VERSION_OVERRIDE": "330",
     "MESA_EXTENSION_OVERRIDE": "-GL_ARB_compute_shader -GL_ARB_shader_image_load_store "
-    "-GL_ARB_texture_barrier -GL_ARB_shading_language_420pack -GL_ARB_buffer_storage -GL_ARB_clear_texture -GL_ARB_copy_image",
+    "-GL_ARB_texture_barrier -GL_ARB_shading_language_420pack "
+    "-GL_ARB_buffer_storage -GL_ARB_clear_texture -GL_ARB_copy_image",
 }
 DRAW_ALL = """
 import json, sys

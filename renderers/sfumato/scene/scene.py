@@ -83,9 +83,6 @@ class Scene:
     def __post_init__(self) -> None:
         from ..techniques import params_of
 
-        object.__setattr__(self, "lights", tuple(self.lights))
-        object.__setattr__(self, "clip", tuple(self.clip))
-        object.__setattr__(self, "geometry", tuple(self.geometry))
         check(self)
         object.__setattr__(self, "technique", params_of(self.technique))
         if len(self.lights) > MAX_LIGHTS:
