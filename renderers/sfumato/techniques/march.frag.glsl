@@ -10,9 +10,6 @@
 #include "clip"
 #include "transfer"
 #include "skip"
-#if LIGHTS > 0
-#include "occlusion"
-#endif
 #if PHONG > 0
 uniform vec3 u_light_color[4];
 uniform vec3 u_towards[4];
@@ -27,6 +24,10 @@ uniform float u_near;            // mm
 uniform float u_far;             // mm
 uniform float u_ambient, u_diffuse, u_specular, u_shininess;
 uniform float u_edge;            // gradient (normalised value per mm) at which a highlight has half its strength
+
+#if LIGHTS > 0
+#include "occlusion"
+#endif
 
 layout(location = 0) out vec4 o_color;
 
@@ -50,8 +51,11 @@ vec3 phong(vec3 gradient, vec3 view, vec3 color, float alpha) {
 #endif
 
 #if LIGHTS > 0
-// Colour that a slab of the occlusion methods sends to the eye; `lateral` is on the plane where light enters.
-vec3 lit(int i, vec2 lateral_front, vec2 lateral_back, vec3 color, float alpha, float depth, float secant, vec3 t, vec3 view) {
+// Where a view ray meets a plane of the stack, and the value there.
+struct Meeting { vec2 lateral; vec3 t; float value; };
+
+// Colour that a slab of the occlusion methods sends to the eye.
+vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float depth, float secant, vec3 t, vec3 view) {
     vec3 result = color * (alpha * u_ambient);
 #if LITERAL
     vec4 returned = vec4(alpha);
@@ -66,7 +70,8 @@ vec3 lit(int i, vec2 lateral_front, vec2 lateral_back, vec3 color, float alpha, 
         if (dot(gradient, view) < 0.0) gradient = -gradient;
     }
     for (int l = 0; l < LIGHTS; ++l) {
-        float visible = visibility(l, i, u_first, u_rear[l] == 1 ? lateral_back : lateral_front);
+        bool rear = u_rear[l] == 1;
+        float visible = visibility(l, i, rear ? back.lateral : front.lateral, rear ? back.t : front.t, rear ? back.value : front.value);
         vec3 arrives = u_light_color[l] * visible;
         result += arrives * color * returned[l];
         if (strength > 0.0 && dot(gradient, u_towards[l]) > 0.0) {
@@ -131,9 +136,10 @@ void main() {
         float alpha = 1.0 - exp(-depth * secant);
         vec3 color = mean.rgb / mean.a;
 #if LIGHTS > 0
-        float front = z0 + float(i) * dz;
-        vec3 c = lit(i, ray.lateral0 + ray.lateral1 * front, ray.lateral0 + ray.lateral1 * (front + dz),
-                     color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
+        float z_front = z0 + float(i) * dz, z_back = z_front + dz;
+        Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, value);
+        Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, value_next);
+        vec3 c = lit(i, front, back, color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
 #elif PHONG > 0
         vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
 #else

@@ -93,6 +93,7 @@ class Variant:
     slices: bool = False
     lights: int = 0
     literal: bool = False
+    near: int = 0
     phong: int = 0
 
 
@@ -108,7 +109,7 @@ class Marcher:
         """Return the program of a variant, compiling it when first asked for."""
         defines = (
             ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
-            ("PHONG", variant.phong), ("EMISSION", int(material.tables.emits)), *material_defines(material),
+            ("NEAR", variant.near), ("PHONG", variant.phong), ("EMISSION", int(material.tables.emits)), *material_defines(material),
         )  # fmt: skip
         if defines not in self._programs:
             self._programs[defines] = Program(self.device, ShaderSource("techniques/march.frag.glsl", defines))

@@ -133,6 +133,13 @@ class Lattice:
         """Return the fraction of a texel by which a plane's grid is shifted, in [0, 1), shape (2,)."""
         return np.array([(plane * s) % SHEAR_UNIT for s in self.shear]) / SHEAR_UNIT
 
+    def to_light(self) -> np.ndarray:
+        """Return the way along a column from a plane to the next one towards the light: lateral x, y and depth in mm."""
+        sign = 1 if self.rear else -1
+        # A column moves by -shear texels per plane.
+        lateral = -np.asarray(self.shear) / SHEAR_UNIT * self.texel * sign
+        return np.array([lateral[0], lateral[1], sign * self.stack.step])
+
     def positions(self, plane: int, base: np.ndarray) -> np.ndarray:
         """Return the 3 x 3 affine from texel coordinates to (lateral x, lateral y, depth) on a plane.
 

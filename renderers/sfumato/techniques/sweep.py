@@ -30,6 +30,9 @@ TILES_PER_ROW = 1024
 MAX_RHYTHM = 4
 RHYTHM_VARIANCE = 0.1
 
+#: Most slabs that are looked through close to a sample.
+MAX_NEAR = 4
+
 #: The forms of occlusion and their number in the shader.
 FORMS = {"extinction": 0, "additive": 1, "multiplicative": 2}
 
@@ -76,9 +79,20 @@ def lamps_for(
     lamps = []
     for (tilt, rotation), aperture, m, stencil, every in zip(angles, apertures, moments, stencils, rhythm, strict=True):
         lattice = Lattice.over(stack, texel, m.mean, rotation, tilt > 90, frame.lattice_jitter, reach)
-        tiles = list_tiles(lattice, centers, half, max(m.along, m.across) * area)
+        tiles = list_tiles(lattice, centers, half, max(m.along, m.across) * area, near_slabs(frame))
         lamps.append(Lamp(lattice, stencil, effective_secant(tilt, aperture), tiles, every))
     return tuple(lamps)
+
+
+def near_slabs(frame: Frame) -> int:
+    """Return in how many slabs before a sample the ray caster itself looks for occluders: those that a texel spans.
+
+    The published forms do not do so.
+    """
+    if FORMS[frame.params.occlusion]:
+        return 0
+    texel = frame.volume.min_spacing / frame.params.resolution * frame.quality.light
+    return max(1, min(MAX_NEAR, math.ceil(texel / frame.step - 1e-6)))
 
 
 def filter_rhythm(variance: float) -> int:

@@ -51,7 +51,7 @@ class TileLists:
         return (int(a[0]), int(a[1])), (int(b[0]), int(b[1]))
 
 
-def list_tiles(lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, variance: float) -> TileLists:
+def list_tiles(lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, variance: float, ahead: int) -> TileLists:
     """Sort the tiles of a lattice.
 
     Parameters
@@ -62,9 +62,11 @@ def list_tiles(lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, va
         Half the extent of a block along the same axes.
     variance : float
         Blur of one slab, in texels squared, in its widest direction.
+    ahead : int
+        Slabs, towards the light, from which the ray caster reads besides a sample's own.
     """
     groups = lattice.stack.count // GROUP + 1
-    full, low = _full_tiles(lattice, centers, half_sizes, groups)
+    full, low = _full_tiles(lattice, centers, half_sizes, groups, ahead)
     spread = math.ceil(TAIL * math.sqrt(lattice.stack.count * variance) / TILE)
     near = maximum_filter(full, size=(1, 2 * spread + 1, 2 * spread + 1))
     along = near[::-1] if lattice.rear else near
@@ -90,7 +92,9 @@ def _runs(kind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.stack([starts[:, 2], starts[:, 1], ends[:, 2] - starts[:, 2]], axis=1), starts[:, 0]
 
 
-def _full_tiles(lattice: Lattice, centers: np.ndarray, half: np.ndarray, groups: int) -> tuple[np.ndarray, tuple[int, int]]:
+def _full_tiles(
+    lattice: Lattice, centers: np.ndarray, half: np.ndarray, groups: int, ahead: int
+) -> tuple[np.ndarray, tuple[int, int]]:
     """Return which tiles can hold something visible in each group of slabs, and the first tile's column."""
     stack = lattice.stack
     shear = np.asarray(lattice.shear) / SHEAR_UNIT
@@ -102,8 +106,9 @@ def _full_tiles(lattice: Lattice, centers: np.ndarray, half: np.ndarray, groups:
     if not len(centers):
         return full, (int(low[0]), int(low[1]))
     # One slab more on either side: a tile's values are first looked at before anything in it can be seen.
-    first = np.clip(np.floor((centers[:, 2] - half[2] - stack.z0) / stack.step).astype(int) - 1, 0, stack.count - 1)
-    last = np.clip(np.floor((centers[:, 2] + half[2] - stack.z0) / stack.step).astype(int) + 1, 0, stack.count - 1)
+    before, behind = (1, 1 + ahead) if lattice.rear else (1 + ahead, 1)
+    first = np.clip(np.floor((centers[:, 2] - half[2] - stack.z0) / stack.step).astype(int) - before, 0, stack.count - 1)
+    last = np.clip(np.floor((centers[:, 2] + half[2] - stack.z0) / stack.step).astype(int) + behind, 0, stack.count - 1)
     across = (centers[:, :2] - lattice.origin) / lattice.texel - low
     reach = half[:2] / lattice.texel + 2
     for step in range(int((last // GROUP - first // GROUP).max()) + 1):

@@ -14,6 +14,7 @@ vec2 table2d_at(float s0, float s1, float gradient) {
 // Mean extinction per mm (a) and extinction times colour (rgb) between two values.
 vec4 classify(float s0, float s1, float gradient) { return textureLod(u_table2d, table2d_at(s0, s1, gradient), 0.0); }
 vec3 classify_emission(float s0, float s1, float gradient) { return textureLod(u_emission2d, table2d_at(s0, s1, gradient), 0.0).rgb; }
+float classify_extinction(float s0, float s1) { return classify(s0, s1, 0.0).a; }
 #else
 uniform sampler2D u_integral;        // integral of (tau * colour, tau) over the normalised value
 uniform sampler2D u_emission;        // integral of tau * emission

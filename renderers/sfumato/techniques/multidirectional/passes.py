@@ -34,10 +34,12 @@ from ..marcher import (
     visible_corners,
 )
 from ..stack import Stack, View
-from ..sweep import Lamp, Sweeper, lamps_for
+from ..sweep import MAX_NEAR, Lamp, Sweeper, lamps_for, near_slabs
 
 #: Slabs of a batch: their light lies in the layers of one texture.
 BATCH = 64
+#: Layers of a light: slab i's is layer i mod LAYERS, so that a batch can still read the slabs just before it.
+LAYERS = BATCH + MAX_NEAR
 #: Sweep passes between two looks at whether a newer scene is there.
 PASSES_PER_PIECE = 16
 
@@ -52,6 +54,7 @@ class Plan:
     lamps: tuple[Lamp, ...]
     angles: tuple[tuple[float, float], ...]
     box: tuple[int, int, int, int]
+    near: int
     kept: dict[tuple[int, int], Any] = field(default_factory=dict)
 
     def batches(self) -> list[tuple[int, int]]:
@@ -115,13 +118,13 @@ class OcclusionPainter:
         lights = frame.scene.active_lights
         angles = tuple((0.0, 0.0) if self.headlamp else a for a in frame.scene.light_angles())
         lamps = lamps_for(frame, material, stack, angles, [light.aperture for light in lights])
-        return Plan(material, stack, stack.slabs_of(depths.min(), depths.max()), lamps, angles, box)
+        return Plan(material, stack, stack.slabs_of(depths.min(), depths.max()), lamps, angles, box, near_slabs(frame))
 
     def _prepare(self, frame: Frame, plan: Plan) -> Program:
         """Set up the march program, the sweepers and the textures."""
         params, lamps = frame.params, plan.lamps
         literal = params.occlusion != "extinction"
-        program = self.marcher.program(Variant(True, lights=len(lamps), literal=literal), plan.material)
+        program = self.marcher.program(Variant(True, lights=len(lamps), literal=literal, near=plan.near), plan.material)
         bind_material(program, plan.material, frame)
         set_view(program, frame, plan.stack)
         program.set(u_ambient=params.ambient, u_specular=params.specular, u_shininess=params.shininess)
@@ -133,7 +136,7 @@ class OcclusionPainter:
         for sweeper, lamp in zip(self._sweepers, lamps, strict=False):
             sweeper.prepare(frame, plan.material, lamp)
         towards = [np.asarray(frame.camera.basis().back)] * len(lamps) if self.headlamp else lights_towards(frame)
-        program.set(**light_uniforms(frame, towards), **_lattice_uniforms(lamps))
+        program.set(**light_uniforms(frame, towards), **_lattice_uniforms(frame, plan))
         apertures = [light.aperture for light in frame.scene.active_lights]
         cones = tuple((tilt, aperture) for (tilt, _), aperture in zip(plan.angles, apertures, strict=True))
         secant = max_secant(frame)
@@ -143,7 +146,7 @@ class OcclusionPainter:
 
     def _make_layers(self, lamps: tuple[Lamp, ...]) -> None:
         width, height = lamps[0].lattice.size
-        wanted = (width, height, BATCH * len(lamps))
+        wanted = (width, height, LAYERS * len(lamps))
         if self._layers is None or self._layers.size != wanted:
             if self._layers is not None:
                 self._layers.release()
@@ -170,18 +173,21 @@ class OcclusionPainter:
 
     def _sweep_rear(self, plan: Plan) -> Iterator[int]:
         """Take the lights from behind through all slabs, keeping their state at the batches' far edges."""
-        batches, done = plan.batches(), 0
-        for first, last in reversed(batches):
+        first, last = plan.slabs
+        starts = {self._rear_start(plan, batch) for batch in plan.batches()}
+        for index in range(last - 1, first - 1, -1):
             for number, (sweeper, lamp) in enumerate(zip(self._sweepers, plan.lamps, strict=False)):
-                if not lamp.lattice.rear:
-                    continue
-                plan.kept[number, first] = sweeper.keep()
-                for index in range(last - 1, first - 1, -1):
-                    sweeper.slab(index, self._layers, number * BATCH + index - first)
-                    if index % PASSES_PER_PIECE == 0:
-                        self.device.wait()
-                        yield done
-            done += last - first
+                if lamp.lattice.rear:
+                    if index in starts:
+                        plan.kept[number, index] = sweeper.keep()
+                    sweeper.slab(index, self._layers, _layer(number, index))
+            if index % PASSES_PER_PIECE == 0:
+                self.device.wait()
+                yield last - index
+
+    def _rear_start(self, plan: Plan, batch: tuple[int, int]) -> int:
+        """Return the slab at which a batch is begun from behind: the ray caster reads a few beyond its end."""
+        return min(batch[1] + plan.near, plan.slabs[1]) - 1
 
     def _sweep_batch(self, plan: Plan, batch: tuple[int, int]) -> Iterator[None]:
         """Take every light through the slabs of a batch, in its own order."""
@@ -189,10 +195,11 @@ class OcclusionPainter:
         for number, (sweeper, lamp) in enumerate(zip(self._sweepers, plan.lamps, strict=False)):
             order = range(first, last)
             if lamp.lattice.rear:
-                sweeper.load(plan.kept[number, first])
-                order = range(last - 1, first - 1, -1)
+                start = self._rear_start(plan, batch)
+                sweeper.load(plan.kept[number, start])
+                order = range(start, first - 1, -1)
             for count, index in enumerate(order, 1):
-                sweeper.slab(index, self._layers, number * BATCH + index - first)
+                sweeper.slab(index, self._layers, _layer(number, index))
                 if count % PASSES_PER_PIECE == 0:
                     self.device.wait()
                     yield
@@ -207,12 +214,23 @@ class OcclusionPainter:
                 texture.release()
 
 
-def _lattice_uniforms(lamps: tuple[Lamp, ...]) -> dict[str, Any]:
-    """Return where the ray caster finds each light's visibility."""
+def _layer(light: int, slab: int) -> int:
+    """Return the layer that holds what of a light reaches a slab."""
+    return light * LAYERS + slab % LAYERS
+
+
+def _lattice_uniforms(frame: Frame, plan: Plan) -> dict[str, Any]:
+    """Return where the ray caster finds each light's visibility, and its own way towards each light."""
     shear, origin, rear = np.zeros((4, 2), dtype=np.int32), np.zeros((4, 2), dtype=np.float32), np.zeros(4, dtype=np.int32)
-    for k, lamp in enumerate(lamps):
-        shear[k], origin[k], rear[k] = lamp.lattice.shear, lamp.lattice.origin, int(lamp.lattice.rear)
+    along, path = np.zeros((4, 3), dtype=np.float32), np.zeros(4, dtype=np.float32)
+    to_texture = frame.volume.texture_from_world[:3, :3]
+    for k, lamp in enumerate(plan.lamps):
+        lattice = lamp.lattice
+        shear[k], origin[k], rear[k], path[k] = lattice.shear, lattice.origin, int(lattice.rear), lamp.path
+        along[k] = to_texture @ lattice.stack.view.axes.T @ lattice.to_light()
+    lattice = plan.lamps[0].lattice
     return {
-        "u_shear": shear, "u_lattice_origin": origin, "u_rear": rear, "u_layers_per_light": BATCH,
-        "u_texel": lamps[0].lattice.texel, "u_lattice_size": tuple(map(float, lamps[0].lattice.size)),
+        "u_shear": shear, "u_lattice_origin": origin, "u_rear": rear, "u_layers_per_light": LAYERS,
+        "u_texel": lattice.texel, "u_lattice_size": tuple(map(float, lattice.size)),
+        "u_to_light": along, "u_path": path, "u_swept": (plan.slabs[0], plan.slabs[1] - 1),
     }  # fmt: skip
