@@ -136,7 +136,9 @@ def test_the_table_is_cut_away_and_the_patient_left_whole() -> None:
     planes = suggest_clip(volume)
     assert 1 <= len(planes) <= 4
     kept = np.ones(volume.data.shape, dtype=bool)
-    z, y, x = (4.0 * (g + 0.5) for g in np.meshgrid(*(np.arange(n) for n in volume.data.shape), indexing="ij"))
+    z, y, x = (
+        4.0 * (g + 0.5) for g in np.meshgrid(*(np.arange(n) for n in volume.data.shape), indexing="ij")
+    )
     for plane in planes:
         kept &= np.stack([x, y, z], axis=-1) @ np.array(plane.normal) >= np.dot(plane.normal, plane.point)
     body = ct(patient(table=False)).data > -500
@@ -203,3 +205,8 @@ def test_a_turned_array_shows_the_same_picture_where_the_orientation_is_known() 
     a, b = (suggest_view(v, suggest_transfer(v)) for v in (straight, turned))
     assert np.allclose(a.position, b.position, atol=0.5)
     assert a.view_up == b.view_up
+
+
+def test_a_few_slices_show_the_cut_tissue() -> None:
+    assert presets_for(ct(patient()[:14]))[0].name == "Muscle"
+    assert looking(ct(patient()[:14])) == ([0, 0, 1], [0, -1, 0])

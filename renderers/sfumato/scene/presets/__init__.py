@@ -14,7 +14,7 @@ from .hounsfield import hounsfield_presets
 from .preset import Preset
 from .relative import mr_presets, plain_presets, ultrasound_presets
 from .table import suggest_clip
-from .values import hounsfield_zero, levels, remembered, thinned
+from .values import hounsfield_zero, is_slab, levels, remembered, thinned
 from .view import suggest_view
 
 __all__ = ["Preset", "preset", "presets_for", "suggest_clip", "suggest_transfer", "suggest_view"]
@@ -47,12 +47,15 @@ def _modality(volume: Volume) -> str:
 
 
 def _by_content(presets: tuple[Preset, ...], volume: Volume, zero: float) -> tuple[Preset, ...]:
-    """Put first what there is enough of: bone, else soft tissue, else whatever is solid."""
+    """Put first what there is enough of: bone, else soft tissue, else skin; of a few slices the cut tissue."""
     values = thinned(volume)
     solid = max(1, int((values > zero - 200).sum()))
+    bone, soft = (float((values > zero + hu).sum()) / solid for hu in (250, 0))
     first = "Bone"
-    if float((values > zero + 250).sum()) / solid < 0.01:
-        first = "Muscle" if float((values > zero).sum()) / solid > 0.2 else "Skin"
+    if soft > 0.2 and (bone < 0.01 or is_slab(volume)):
+        first = "Muscle"
+    elif bone < 0.01:
+        first = "Skin"
     return tuple(sorted(presets, key=lambda p: p.name != first))
 
 

@@ -7,7 +7,7 @@ from .preset import Preset
 
 RGB = tuple[float, float, float]
 SKIN: RGB = (0.52, 0.30, 0.20)
-MUSCLE: RGB = (0.42, 0.11, 0.07)
+MUSCLE: RGB = (0.36, 0.095, 0.06)
 BLOOD: RGB = (0.55, 0.06, 0.04)
 CARTILAGE: RGB = (0.54, 0.38, 0.24)
 BONE: RGB = (0.58, 0.51, 0.37)
@@ -18,10 +18,10 @@ LUNG: RGB = (0.60, 0.33, 0.29)
 Points = list[tuple[float, RGB, float]]
 
 _BONE: Points = [
-    (130, MUSCLE, 0.0),
-    (210, MUSCLE, 0.25),
-    (300, CARTILAGE, 0.7),
-    (420, BONE, 0.92),
+    (150, MUSCLE, 0.0),
+    (230, MUSCLE, 0.2),
+    (320, CARTILAGE, 0.7),
+    (430, BONE, 0.92),
     (1200, DENSE_BONE, 0.95),
     (2500, DENSE_BONE, 0.95),
     (3000, METAL, 0.95),
@@ -36,7 +36,7 @@ _SKIN: Points = [
 _MUSCLE: Points = [
     (-20, MUSCLE, 0.0),
     (50, MUSCLE, 0.5),
-    (130, (0.55, 0.17, 0.11), 0.8),
+    (130, (0.43, 0.14, 0.09), 0.8),
     (240, CARTILAGE, 0.85),
     (400, BONE, 0.95),
     (1500, DENSE_BONE, 0.95),

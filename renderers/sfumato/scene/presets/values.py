@@ -13,6 +13,8 @@ from ..volume import Volume
 
 #: Samples along each axis are enough to judge values by.
 SAMPLES = 128
+#: What is thinner than this share of its other extents is a slab.
+THIN = 0.35
 _BINS = 512
 
 
@@ -37,6 +39,12 @@ def thinned(volume: Volume, samples: int = SAMPLES) -> np.ndarray:
     """Return every n-th voxel along each axis, so that at most about `samples` remain on it; a view."""
     steps = tuple(max(1, n // samples) for n in volume.data.shape)
     return volume.data[:: steps[0], :: steps[1], :: steps[2]]
+
+
+def is_slab(volume: Volume) -> bool:
+    """Tell whether a volume is a few slices: much thinner along one axis than along the others."""
+    thin, other, _ = sorted(n * s for n, s in zip(volume.dims, volume.spacing, strict=True))
+    return thin < THIN * other
 
 
 def hounsfield_zero(volume: Volume) -> float | None:

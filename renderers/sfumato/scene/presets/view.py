@@ -8,12 +8,11 @@ from ..camera import STANDARD_VIEWS, Camera
 from ..transfer import TransferFunction
 from ..volume import Volume
 from .table import face_side, suggest_clip
+from .values import THIN
 from .visible import outline, seen_cells
 
 Vec3 = tuple[float, float, float]
 
-#: A subject thinner than this share of its other extents is seen along its thin axis.
-THIN = 0.35
 #: A picture of which more than this share is one plane facing the viewer is of a cut, not of the subject.
 FLAT = 0.7
 
