@@ -32,8 +32,11 @@ class SeriesDialog(QDialog):
         self.list = QTreeWidget()
         self.list.setHeaderLabels(["Series", "Images", "Spacing (mm)"])
         self.list.setRootIsDecorated(False)
+        self.list.header().setStretchLastSection(False)
+        self.list.header().setSectionsMovable(False)
         self.list.setAccessibleName("Series")
-        self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        for column, mode in enumerate(("Stretch", "ResizeToContents", "ResizeToContents")):
+            self.list.header().setSectionResizeMode(column, QHeaderView.ResizeMode[mode])
         for one in series:
             spacing = " × ".join(f"{s:.2f}" for s in one.spacing) if one.spacing else "not known"
             row = QTreeWidgetItem([one.label, str(one.count), spacing])
@@ -47,13 +50,13 @@ class SeriesDialog(QDialog):
         )
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(16, 14, 16, 14)
-        column.setSpacing(10)
-        column.addWidget(QLabel("This folder holds several series. Which one shall be opened?"))
-        column.addWidget(self.list)
-        column.addWidget(buttons)
-        self.resize(560, 320)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(16, 14, 16, 14)
+        layout.setSpacing(10)
+        layout.addWidget(QLabel("This folder holds several series. Which one shall be opened?"))
+        layout.addWidget(self.list)
+        layout.addWidget(buttons)
+        self.resize(560, 300)
 
     @property
     def chosen(self) -> Any:
@@ -94,6 +97,7 @@ class PictureDialog(QDialog):
 def _pixels(name: str, value: int) -> QSpinBox:
     box = QSpinBox()
     box.setRange(16, 8192)
+    box.setButtonSymbols(QSpinBox.ButtonSymbols.NoButtons)
     box.setValue(value)
     box.setSuffix(" px")
     box.setAccessibleName(f"{name} in pixels")

@@ -25,8 +25,6 @@ _GLYPHS = {
     "error": "ph.warning",
     "info": "ph.info",
     "reset": "ph.arrow-u-up-left",
-    "closed": "ph.caret-right",
-    "opened": "ph.caret-down",
 }
 
 

@@ -2,12 +2,39 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QSize, Qt
-from qtpy.QtWidgets import QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtCore import QPointF, QSize, Qt
+from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
+from qtpy.QtWidgets import QAbstractButton, QSizePolicy, QVBoxLayout, QWidget
 
-from .icons import icon
 from .settings import settings
-from .theme import current_theme
+from .theme import TARGET, current_theme
+
+
+class Header(QAbstractButton):
+    """The section's name behind an arrow, flush with the labels above and below."""
+
+    def sizeHint(self) -> QSize:
+        """Be as wide as arrow and name, and tall enough to click."""
+        metrics = self.fontMetrics()
+        return QSize(metrics.horizontalAdvance(self.text()) + 32, max(TARGET + 4, metrics.height() + 10))
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw arrow, name and focus ring."""
+        theme = current_theme()
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.underMouse() or self.hasFocus():
+            painter.setPen(QPen(QColor(theme.accent), 2) if self.hasFocus() else Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(theme.hover) if self.underMouse() else Qt.BrushStyle.NoBrush)
+            painter.drawRoundedRect(self.rect().adjusted(1, 1, -1, -1), 5, 5)
+        middle = self.height() / 2
+        tips = ((1, -2), (5, 2), (9, -2)) if self.isChecked() else ((3, -4), (7, 0), (3, 4))
+        painter.setPen(QPen(QColor(theme.text), 1.6, c=Qt.PenCapStyle.RoundCap, j=Qt.PenJoinStyle.RoundJoin))
+        painter.drawPolyline(QPolygonF([QPointF(3 + x, middle + y) for x, y in tips]))
+        font = painter.font()
+        font.setBold(True)
+        painter.setFont(font)
+        painter.drawText(self.rect().adjusted(20, 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, self.text())
 
 
 class Section(QWidget):
@@ -16,12 +43,10 @@ class Section(QWidget):
     def __init__(self, title: str, key: str) -> None:
         super().__init__()
         self._key = f"section/{key}"
-        self.header = QToolButton()
+        self.header = Header()
         self.header.setCheckable(True)
-        self.header.setIconSize(QSize(12, 12))
-        self.header.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.header.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.header.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.header.setProperty("section", True)
         self.header.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.body = QWidget()
         self._inside = inside = QVBoxLayout(self.body)
@@ -58,14 +83,7 @@ class Section(QWidget):
         """Put a widget at its end."""
         self._inside.addWidget(widget)
 
-    def refresh_theme(self) -> None:
-        """Take the theme's icon colours."""
-        self.header.setIcon(
-            icon("opened" if self.header.isChecked() else "closed", current_theme(), current_theme().text)
-        )
-
     def _on_toggled(self, opened: bool, remember: bool = True) -> None:
         self.body.setVisible(opened)
-        self.refresh_theme()
         if remember:
             settings().setValue(self._key, opened)

@@ -52,7 +52,7 @@ class StatusLine(QFrame):
         """Say how the newest picture came about."""
         width, height = picture.image.width(), picture.image.height()
         kind = "moving" if picture.interactive else f"frame {picture.frames} of {STILL_FRAMES}"
-        self.state.setText(f"{1000 * picture.seconds:.0f} ms   {width} × {height}   {kind}")
+        self.state.setText(f"{_duration(picture.seconds)}   {width} × {height}   {kind}")
         if picture.settled:
             self.bar.hide()
 
@@ -65,3 +65,7 @@ class StatusLine(QFrame):
         """Name the graphics device; the whole name in the tooltip."""
         self.renderer.setText(name.split(" (")[0])
         self.renderer.setToolTip(name)
+
+
+def _duration(seconds: float) -> str:
+    return f"{1000 * seconds:.0f} ms" if seconds < 1 else f"{seconds:.1f} s"

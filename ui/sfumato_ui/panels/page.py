@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QFrame, QLabel, QScrollArea, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QFrame, QLabel, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 
 class Page(QScrollArea):
@@ -29,7 +29,10 @@ class Page(QScrollArea):
         self.column.setContentsMargins(14, 10, 14 - bar, 10)
 
     def add(self, widget: QWidget) -> None:
-        """Put a widget at the column's end."""
+        """Put a widget at the column's end; it keeps its height however high the window is."""
+        policy = widget.sizePolicy()
+        policy.setVerticalPolicy(QSizePolicy.Policy.Fixed)
+        widget.setSizePolicy(policy)
         self.column.addWidget(widget)
 
     def add_heading(self, text: str) -> None:
