@@ -47,7 +47,8 @@ def suggest_clip(volume: Volume) -> tuple[ClipPlane, ...]:
     if scan is None:
         return ()
     x, y = (np.asarray(volume.direction)[:, i] for i in (0, 1))
-    left, planes = scan.other, []
+    left = scan.other
+    planes: list[ClipPlane] = []
     normals = [math.cos(a) * x + math.sin(a) * y for a in np.linspace(0, 2 * math.pi, 48, endpoint=False)]
     bounds = [float((scan.body @ n).max()) + MARGIN for n in normals]
     enough = max(4.0, 0.003 * len(scan.other))

@@ -51,7 +51,7 @@ def _coarse_mask(volume: Volume, transfer: TransferFunction) -> np.ndarray:
 
 def _pooled(mask: np.ndarray, steps: tuple[int, ...]) -> np.ndarray:
     """Return which blocks of a mask hold a quarter of seen voxels or more."""
-    share = mask.astype(np.float32)
+    share: np.ndarray = mask.astype(np.float32)
     for axis, step in enumerate(steps):
         starts = np.arange(0, share.shape[axis], step)
         counts = np.diff(np.append(starts, share.shape[axis]))
