@@ -1,0 +1,268 @@
+"""The only folder that calls moderngl: compiling, uniforms, the store, threads, and nothing left behind."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sfumato
+from sfumato import ClipPlane, GpuError, Light, Scene, SceneError, TransferFunction, Volume
+from sfumato.gpu import Device, Program, ShaderSource, Store, Target
+from sfumato.gpu import program as program_module
+from sfumato.renderer import Quality, Renderer
+from sfumato.techniques import techniques
+
+pytestmark = pytest.mark.gpu
+
+
+@pytest.fixture
+def device() -> Iterator[Device]:
+    device = Device()
+    yield device
+    device.make_current()
+    device.close()
+
+
+@pytest.fixture
+def shader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Write a shader (and a library beside it) of a few lines and return its source."""
+    (tmp_path / "lib").mkdir()
+    monkeypatch.setattr(program_module, "PACKAGE", tmp_path)
+    monkeypatch.setattr(program_module, "LIBRARY", tmp_path / "lib")
+
+    def write(text: str, *defines: tuple[str, int], **library: str) -> ShaderSource:
+        for name, body in library.items():
+            (tmp_path / "lib" / f"{name}.glsl").write_text(body)
+        (tmp_path / "own.frag.glsl").write_text(text)
+        return ShaderSource("own.frag.glsl", defines)
+
+    return write
+
+
+def drawn(device: Device, program: Program, components: int = 4) -> np.ndarray:
+    """Return the one pixel that a program draws."""
+    target = Target(device, (1, 1), components)
+    target.fbo.use()
+    program.draw()
+    pixel = target.read()[0, 0]
+    target.release()
+    return pixel
+
+
+# -- programs -----------------------------------------------------------------------------------------
+def test_a_compile_error_names_our_file_and_line(device: Device, shader: Any) -> None:
+    source = shader("out vec4 o;\n\nvoid main() { o = no_such_name; }\n")
+    with pytest.raises(GpuError) as caught:
+        Program(device, source)
+    assert "own.frag.glsl:3" in str(caught.value)
+    assert "no_such_name" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_compile_error_in_an_include_names_the_include(device: Device, shader: Any) -> None:
+    source = shader(
+        '#include "part"\nout vec4 o;\nvoid main() { o = vec4(f()); }\n',
+        part="// fine\n\nfloat f() { return wrong; }\n",
+    )
+    with pytest.raises(GpuError, match=r"lib/part\.glsl:3"):
+        Program(device, source)
+    source = shader(
+        '#include "part"\nout vec4 o;\nvoid main() { o = vec4(wrong); }\n', part="float f() { return 1.0; }\n"
+    )
+    with pytest.raises(GpuError, match=r"own\.frag\.glsl:3"):
+        Program(device, source)
+
+
+def test_includes_are_taken_once_and_defines_come_first(device: Device, shader: Any) -> None:
+    source = shader(
+        '#include "a"\n#include "b"\nout vec4 o;\nvoid main() { o = vec4(a(), b(), VALUE, 1.0); }\n',
+        ("VALUE", 7),
+        a="float a() { return 2.0; }\n",
+        b='#include "a"\nfloat b() { return a() + float(VALUE); }\n',
+    )
+    assert drawn(device, Program(device, source)).tolist() == [2, 9, 7, 1]
+
+
+def test_uniform_arrays_may_be_longer_than_the_compilers(device: Device, shader: Any) -> None:
+    source = shader(
+        "uniform vec3 u_colors[4]; uniform int u_numbers[4]; uniform ivec2 u_pairs[3]; out vec4 o;\n"
+        "void main() { o = vec4(u_colors[0].y, u_colors[1].z, u_numbers[1], u_pairs[1].y); }\n"
+    )
+    program = Program(device, source)
+    colors = np.arange(12, dtype=np.float64).reshape(4, 3)
+    program.set(u_colors=colors, u_numbers=np.arange(4), u_pairs=np.arange(6).reshape(3, 2), u_no_such=3)
+    assert drawn(device, program).tolist() == [1, 5, 1, 3]
+
+
+def test_programs_in_turn_keep_their_own_textures(device: Device, shader: Any) -> None:
+    text = "uniform sampler2D u_a; uniform sampler2D u_b; out vec4 o;\nvoid main() { o = %s; }\n"
+    textures = [Target(device, (1, 1)) for _ in range(3)]
+    for k, target in enumerate(textures):
+        target.clear(k + 1)
+    both = Program(
+        device, shader(text % "texelFetch(u_a, ivec2(0), 0) + 10.0 * texelFetch(u_b, ivec2(0), 0)")
+    )
+    other = Program(device, shader(text % "texelFetch(u_b, ivec2(0), 0)"))
+    both.bind(u_a=textures[0].texture, u_b=textures[1].texture)
+    other.bind(u_b=textures[2].texture)
+    assert [drawn(device, p)[0] for p in (both, other, both, other)] == [21, 3, 21, 3]
+
+
+# -- targets ------------------------------------------------------------------------------------------
+def test_targets_have_row_0_on_top(device: Device) -> None:
+    target = Target(device, (3, 2))
+    pixels = np.arange(24, dtype=np.float32).reshape(2, 3, 4)
+    target.write(pixels)
+    assert np.array_equal(target.read(), pixels)
+
+
+def test_a_picture_too_large_is_a_gpu_error(device: Device) -> None:
+    with pytest.raises(GpuError) as caught:
+        Target(device, (10 * device.max_texture_2d, 4))
+    assert "\n" not in str(caught.value)
+    assert Target(device, (4, 4)).read().shape == (4, 4, 4), "the device goes on"
+
+
+def test_a_volume_too_long_is_a_gpu_error() -> None:
+    renderer = Renderer()
+    volume = Volume(np.zeros((1, 1, renderer.device.max_texture_3d + 1), np.uint8))
+    with pytest.raises(GpuError, match="along a side"):
+        for _ in renderer.begin(Scene(volume=volume), (8, 8)).add_frame():
+            pass
+    renderer.close()
+
+
+# -- the store ----------------------------------------------------------------------------------------
+class Thing:
+    """Something to be released."""
+
+    released = False
+
+    def release(self) -> None:
+        assert not self.released
+        self.released = True
+
+
+def test_the_store_keeps_what_was_used_last_within_its_budget() -> None:
+    store, things = Store(budget=250), [Thing() for _ in range(6)]
+    for k, thing in enumerate(things[:3]):
+        assert store.get(("thing", k), lambda thing=thing: thing, 100) is thing  # type: ignore[misc]
+    assert store.get(("thing", 0), Thing, 100) is things[0], "kept, and now the youngest"
+    store.get(("thing", 3), lambda: things[3], lambda _: 100)
+    assert [t.released for t in things[:4]] == [False, True, False, False]
+    assert store.bytes_in_use == 300
+    assert store.listing()[0] == ("thing", 100)
+    store.drop(lambda key: key == ("thing", 0))
+    assert things[0].released
+    store.clear()
+    assert store.bytes_in_use == 0
+    assert things[3].released
+
+
+# -- threads ------------------------------------------------------------------------------------------
+def test_a_device_belongs_to_its_thread(device: Device) -> None:
+    caught: list[BaseException] = []
+
+    def elsewhere() -> None:
+        try:
+            device.make_current()
+        except GpuError as error:
+            caught.append(error)
+
+    thread = threading.Thread(target=elsewhere)
+    thread.start()
+    thread.join()
+    assert len(caught) == 1
+    assert "thread" in str(caught[0])
+
+
+def test_each_thread_may_render(still_life: Volume) -> None:
+    scene, pictures = Scene(volume=still_life, technique="raycast"), {}
+    here = sfumato.render(scene, (24, 24))
+
+    def elsewhere(number: int) -> None:
+        renderer = Renderer()
+        job = renderer.begin(scene, (24, 24))
+        for _ in job.add_frame():
+            pass
+        pictures[number] = job.picture()
+        job.release()
+        renderer.close()
+
+    threads = [threading.Thread(target=elsewhere, args=(k,)) for k in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(pictures[k], here) for k in range(2))
+    assert np.array_equal(sfumato.render(scene, (24, 24)), here)
+
+
+# -- what a renderer owes -----------------------------------------------------------------------------
+@pytest.mark.parametrize("size", [(0, 4), (4, -1), (10**6, 4)])
+def test_impossible_sizes(size: tuple[int, int], still_life: Volume) -> None:
+    with pytest.raises(SceneError, match="size"):
+        sfumato.render(Scene(volume=still_life), size)
+
+
+def test_no_volume() -> None:
+    with pytest.raises(SceneError, match="volume"):
+        sfumato.render(Scene())
+
+
+def random_scene(random: np.random.Generator, volumes: list[Volume]) -> Scene:
+    """Return any of many scenes, by the fast techniques."""
+    fast = [name for name in techniques() if name != "reference"]
+    low = random.uniform(20, 60)
+    transfer = TransferFunction.from_points(
+        [(low, (1, 1, 1), 0), (low + 80, tuple(random.uniform(0, 1, 3)), 0.7)]
+    )
+    tilt = float(random.choice([20, 60, 130]))
+    lights = [Light(tilt=tilt, rotation=float(random.uniform(0, 360)), aperture=15)] * int(
+        random.integers(0, 3)
+    )
+    clip = [ClipPlane((20, 20, 20), tuple(random.normal(size=3)))] * int(random.integers(0, 2))
+    volume = volumes[random.integers(len(volumes))]
+    return Scene(
+        volume=volume, transfer=transfer, lights=lights, clip=clip, technique=str(random.choice(fast)), step=2.0
+    )  # fmt: skip
+
+
+def living(device: Device) -> int:
+    """Return how many textures, framebuffers and buffers there are."""
+    kinds = [
+        device._function(f"glIs{kind}", ctypes.c_ubyte, ctypes.c_uint)
+        for kind in ("Texture", "Framebuffer", "Buffer")
+    ]
+    newest = device.ctx.texture((1, 1), 1)
+    names = range(1, newest.glo + 1)  # Mesa counts up
+    newest.release()
+    return sum(bool(is_one(name)) for is_one in kinds for name in names)
+
+
+def test_nothing_is_left_behind_by_a_hundred_pictures(still_life: Volume) -> None:
+    random = np.random.default_rng(7)
+    small = still_life.data[::2, ::2, ::2]
+    volumes = [Volume(np.ascontiguousarray(small[k:, k:, k:]), spacing=(2, 2, 2)) for k in range(3)]
+    renderer = Renderer()
+    device = renderer.device
+    device.store.budget = 1 << 20
+    counts = []
+    for number in range(100):
+        job = renderer.begin(random_scene(random, volumes), (16 + number % 3, 16), Quality(light=2.0))
+        for progress in job.add_frame():
+            if random.uniform() < 0.1:  # a newer scene came
+                break
+            assert 0 <= progress <= 1
+        job.release()
+        device.collect()
+        assert device.store.bytes_in_use <= device.store.budget + (1 << 20)
+        counts.append(living(device))
+    renderer.close()
+    assert max(counts[60:]) <= max(counts[:60]) + 2, counts
