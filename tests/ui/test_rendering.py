@@ -33,9 +33,8 @@ def test_a_still_picture_is_refined_to_the_end(window: MainWindow, qtbot: QtBot)
     assert not window.status.bar.isVisible()
 
 
-def test_the_event_loop_never_stalls_during_a_heavy_render(make_window: Any, qtbot: QtBot) -> None:
-    window = make_window(Scene(volume=noisy(160), step=0.25), size=(1200, 860))
-    qtbot.waitUntil(lambda: window.viewport.picture is not None, timeout=120_000)
+def longest_gap(qtbot: QtBot, milliseconds: int) -> float:
+    """Return the longest time in seconds between two turns of the event loop."""
     gaps: list[float] = []
     last = time.perf_counter()
 
@@ -45,14 +44,24 @@ def test_the_event_loop_never_stalls_during_a_heavy_render(make_window: Any, qtb
         gaps.append(now - last)
         last = now
 
-    timer = QTimer(window)
+    timer = QTimer()
     timer.timeout.connect(tick)
     timer.start(5)
-    qtbot.wait(6000)
+    qtbot.wait(milliseconds)
     timer.stop()
+    return max(gaps)
+
+
+def test_the_event_loop_never_stalls_during_a_heavy_render(make_window: Any, qtbot: QtBot) -> None:
+    window = make_window(size=(1200, 860))
+    # What the machine itself does to an idle loop, with other programs beside us, is not ours.
+    idle = longest_gap(qtbot, 3000)
+    window.editor.reset(Scene(volume=noisy(160), step=0.25))
+    qtbot.waitUntil(lambda: window.viewport.picture is not None, timeout=200_000)
+    gap = longest_gap(qtbot, 6000)
     assert not window.viewport.picture.settled, "the render was not heavy enough to measure anything"
-    print(f"longest gap {1000 * max(gaps):.0f} ms, 99.9 % {1000 * np.quantile(gaps, 0.999):.0f} ms")
-    assert max(gaps) < LONGEST_GAP * MARGIN
+    print(f"longest gap {1000 * gap:.0f} ms, idle {1000 * idle:.0f} ms")
+    assert gap < LONGEST_GAP * MARGIN + 2 * idle
 
 
 def test_pictures_keep_coming_while_the_hand_moves(window: MainWindow, hand: Any, qtbot: QtBot) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from qtpy.QtCore import QSize, Qt, Signal
-from qtpy.QtWidgets import QFrame, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QMenu, QToolButton, QVBoxLayout, QWidget
+
+import sfumato_samples
 
 from .editing import Editor
 from .icons import icon
@@ -29,12 +31,18 @@ class TopBar(QFrame):
 
     #: Unlit is held (True) or let go.
     unlit = Signal(bool)
+    #: What the user wants to open.
+    file_wanted = Signal()
+    folder_wanted = Signal()
+    sample_wanted = Signal(str)
 
     def __init__(self, editor: Editor) -> None:
         super().__init__()
         self.setObjectName("TopBar")
         self._editor = editor
         self.open = tool_button("Open", "Open a volume, a folder or a scene (Ctrl+O)", text="Open")
+        self.open.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.open.setMenu(self._open_menu())
         self.save = tool_button("Save scene", "Save the scene (Ctrl+S)", text="Save")
         self.undo = tool_button("Undo", "")
         self.redo = tool_button("Redo", "")
@@ -59,6 +67,19 @@ class TopBar(QFrame):
         editor.history_changed.connect(self.refresh)
         self.refresh_theme()
         self.refresh()
+
+    def _open_menu(self) -> QMenu:
+        menu = QMenu(self)
+        menu.addAction("File…\tCtrl+O", self.file_wanted.emit)
+        menu.addAction("Folder…\tCtrl+Shift+O", self.folder_wanted.emit)
+        menu.addSection("Samples")
+        for entry in sfumato_samples.catalogue():
+            action = menu.addAction(entry.title)
+            action.setToolTip(entry.description)
+            action.triggered.connect(
+                lambda _=False, name=entry.name: self.sample_wanted.emit(f"sample:{name}")
+            )
+        return menu
 
     def refresh(self) -> None:
         """Say what can be undone."""

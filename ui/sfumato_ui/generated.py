@@ -30,6 +30,19 @@ class ChoiceBox(QComboBox):
             event.ignore()
 
 
+def labelled(label: str, control: QWidget) -> QWidget:
+    """Return a row of a label and a control; the controls of several rows stand below each other."""
+    row = QWidget()
+    layout = QHBoxLayout(row)
+    layout.setContentsMargins(0, 0, 0, 0)
+    layout.setSpacing(8)
+    words = QLabel(label)
+    words.setMinimumWidth(words.fontMetrics().horizontalAdvance("Lamp colour "))
+    layout.addWidget(words)
+    layout.addWidget(control, 1)
+    return row
+
+
 def tooltip_of(param: Param) -> str:
     """Return meaning and source of a parameter as they are shown beside its control."""
     return param.meaning + (f" ({param.source})" if param.source else "")
@@ -104,13 +117,13 @@ class ParamControl(QWidget):
             self.control = self._check_box()
         elif field.param.choices:
             self.control = self._choice(field.param)
-            layout.addWidget(QLabel(self.name))
         else:
             self.control = slider_for(field)
             bind_slider(self.control, editor, path, self.name.lower(), field.type)
         self.control.setAccessibleName(self.name)
         self.control.setToolTip(tooltip_of(field.param))
-        layout.addWidget(self.control, 1)
+        choice = isinstance(self.control, ChoiceBox)
+        layout.addWidget(labelled(self.name, self.control) if choice else self.control, 1)
         self.show_value()
 
     def _check_box(self) -> QCheckBox:

@@ -8,6 +8,7 @@ from typing import Any
 
 from qtpy.QtCore import QObject, Signal
 
+import sfumato_samples
 from sfumato import Scene, Volume
 from sfumato.export.png import open_png
 
@@ -16,6 +17,7 @@ from .worker import one_line
 #: Shown when nothing was asked for.
 DEFAULT_SAMPLE = "sample:hand"
 SCENE_SUFFIX = ".sfumato"
+SAMPLE = "sample:"
 
 
 class Loader(QObject):
@@ -89,6 +91,8 @@ def read_scene(path: str, series: Any = None, progress: Any = None, cancel: Any 
     """
     if path.endswith(SCENE_SUFFIX):
         scene = Scene.open(path)
+    elif path.startswith(SAMPLE):
+        scene = sfumato_samples.scene(path.removeprefix(SAMPLE))
     elif path.lower().endswith(".png"):
         scene = open_png(path)
     else:
@@ -104,7 +108,7 @@ def read_scene(path: str, series: Any = None, progress: Any = None, cancel: Any 
 
 def _several_series(path: str) -> list[Any]:
     """Return the DICOM series in a folder, the largest first; nothing for anything else."""
-    if path.startswith("sample:") or not Path(path).is_dir():
+    if path.startswith(SAMPLE) or not Path(path).is_dir():
         return []
     from sfumato.io import find_series
 

@@ -109,7 +109,9 @@ class MainWindow(QMainWindow):
 
     def _connect(self) -> None:
         editor, worker = self.editor, self.worker
-        self.top.open.clicked.connect(self.files.ask_to_open)
+        self.top.file_wanted.connect(self.files.ask_to_open)
+        self.top.folder_wanted.connect(self.files.ask_to_open_folder)
+        self.top.sample_wanted.connect(self.files.open)
         self.top.save.clicked.connect(lambda: self.files.save_scene())
         self.top.picture.clicked.connect(self.files.ask_to_save_picture)
         self.top.unlit.connect(self.driver.set_unlit)

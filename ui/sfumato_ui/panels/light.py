@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from qtpy.QtCore import Qt, Signal
-from qtpy.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from sfumato import Light, Scene
 from sfumato.scene import fields_of, nearest_possible_tilt
@@ -13,7 +12,7 @@ from .. import light_moves
 from ..color_button import ColorButton
 from ..dial import MOVE, SOFTEN, LightDial
 from ..editing import Editor
-from ..generated import ChoiceBox, ParamControl, controls_for, tooltip_of
+from ..generated import ChoiceBox, ParamControl, controls_for, labelled, tooltip_of
 from ..lamps import LampRow
 from ..section import Section
 from ..sliders import LabelledSlider
@@ -47,7 +46,7 @@ class LightPage(Page):
         self._technique_type: object = None
         for widget in (self.lamps, self.dial, self.tilt, self.rotation, self.aperture, self.intensity):
             self.add(widget)
-        self.add(_row("Technique", self.technique))
+        self.add(labelled("Technique", self.technique))
         self.add(self.own)
         self.add(self.more)
         self.finish()
@@ -161,19 +160,8 @@ class LightPage(Page):
         self.own.setVisible(bool(essential))
         for control in essential:
             self.own.add(control)
-        self._color_row = _row("Lamp colour", self.color)
-        self.more.add(self._color_row)
+        self.more.add(labelled("Lamp colour", self.color))
         for control in rest:
             self.more.add(control)
         self.controls = essential + rest
         self.rebuilt.emit()
-
-
-def _row(label: str, widget: QWidget) -> QWidget:
-    row = QWidget()
-    layout = QHBoxLayout(row)
-    layout.setContentsMargins(0, 0, 0, 0)
-    layout.setSpacing(8)
-    layout.addWidget(QLabel(label))
-    layout.addWidget(widget, 1)
-    return row

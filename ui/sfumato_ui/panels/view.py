@@ -18,7 +18,7 @@ from sfumato.scene import STANDARD_VIEWS, fields_of
 
 from .. import camera_moves
 from ..editing import Editor
-from ..generated import ChoiceBox, bind_slider, slider_for
+from ..generated import ChoiceBox, bind_slider, labelled, slider_for
 from ..section import Section
 from ..theme import THEMES, current_theme
 from .page import Page
@@ -100,15 +100,10 @@ class ViewPage(Page):
         return row
 
     def _theme_row(self) -> QWidget:
-        row = QWidget()
-        layout = QHBoxLayout(row)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(QLabel("Theme"))
         self.theme.setAccessibleName("Theme")
         for name in THEMES:
             self.theme.addItem(name.capitalize(), name)
-        layout.addWidget(self.theme, 1)
-        return row
+        return labelled("Theme", self.theme)
 
     def _connect(self) -> None:
         editor = self._editor
