@@ -24,6 +24,8 @@ from .slab import SecantRule, secant_rule
 PAD = 2
 #: Shears are rounded to this fraction of a texel, so that their multiples are exact.
 SHEAR_UNIT = 32768
+#: Most slabs before a sample in which occluders are looked for on the sample's own way to the light.
+MAX_NEAR = 4
 LIT = ("multidirectional", "directional")
 UNLIT = ("slices", "raycast")
 
@@ -172,6 +174,28 @@ class LightGrid:
 
     # -- what the eye asks ----------------------------------------------------------------------------
     def reaching(self, slab: int, p_world: np.ndarray) -> np.ndarray:
+        """Return lambda of a slab at points (n, 3) of its entry plane.
+
+        The extinction form looks for what is close on each point's own way to the light, over as many slabs
+        as a texel spans, and asks the grid there; the published forms ask it at the slab itself.
+        """
+        if self.form != "extinction":
+            return self._on_grid(slab, p_world)
+        near = max(1, min(MAX_NEAR, math.ceil(self.h / self.stack.d - 1e-6)))
+        at = min(slab + near, self.stack.n - 1) if self.rear else max(slab - near, 0)
+        lateral = self.shear / SHEAR_UNIT * self.h
+        to_light = np.array([lateral[0], lateral[1], -self.sign * self.stack.d])
+        along = self.frame.to_world(*to_light) - self.frame.to_world(*np.zeros(3))
+        depth = np.zeros(len(p_world))
+        for k in range(near):
+            start = p_world + k * along
+            t_in, t_out = self.region.interval(start, np.broadcast_to(along, start.shape))
+            inside = np.maximum(np.minimum(t_out, 1) - np.maximum(t_in, 0), 0)
+            mean = self.medium.extinction_between(self.medium.value(start), self.medium.value(start + along))
+            depth += mean * inside * self.stack.d
+        return self._on_grid(at, p_world + abs(at - slab) * along) * np.exp(-depth * self.rule.effective)
+
+    def _on_grid(self, slab: int, p_world: np.ndarray) -> np.ndarray:
         """Return lambda of a slab at points (n, 3) of its entry plane: bilinear, clamped at the edge."""
         at = self.frame.to_camera(p_world)[:, :2]
         texel = (at - self._origin(slab + 1 if self.rear else slab)) / self.h

@@ -32,7 +32,7 @@ uniform float u_edge;            // gradient (normalised value per mm) at which 
 layout(location = 0) out vec4 o_color;
 
 // What a ray can still let through before it counts as opaque.
-const float OPAQUE = 0.997;
+const float OPAQUE = 0.999;
 
 #if PHONG > 0
 // Blinn-Phong; the normal is turned to the viewer, since a gradient has no outside.
