@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +22,8 @@ from .first_picture import Figures, look_at, srgb
 
 #: Linear colour behind the pictures: dark, but not the black of a shadow.
 BACKGROUND = np.array([0.014, 0.016, 0.019], dtype=np.float32)
+#: Paper and ink of the labels.
+INK = ((16, 17, 18), (225, 225, 225))
 LABEL_LINES = 4
 NO_VOLUMES = {
     ".json",
@@ -140,20 +143,25 @@ def _draw(name: str, volume: Volume, size: int, frames: int) -> Result:
 
 
 def write_sheet(results: Sequence[Result], out: Path, size: int) -> None:
-    """Write the pictures, each above its name and figures, as one PNG."""
-    columns = max(1, min(len(results), round((len(results) * 1.6) ** 0.5)))
-    font = ImageFont.load_default(max(9, size // 24))
-    line = max(12, size // 19)
+    """Write the pictures, each above its name and figures, and below them what was not drawn, as one PNG."""
+    drawn = [r for r in results if r.picture is not None]
+    other = [f"{r.name}: {r.verdict}" for r in results if r.picture is None]
+    columns = max(1, round((len(drawn) * 1.6) ** 0.5))
+    line = max(11, size // 18)
+    font = ImageFont.load_default(round(line * 0.75))
     height = size + LABEL_LINES * line + line // 2
-    rows = -(-len(results) // columns)
-    sheet = Image.new("RGB", (columns * size, max(1, rows) * height), (24, 25, 27))
+    rows = -(-len(drawn) // columns)
+    notes = [text for full in other for text in textwrap.wrap(full, max(20, columns * size * 2 // line))]
+    sheet = Image.new("RGB", (columns * size, rows * height + (len(notes) + 1) * line), INK[0])
     pen = ImageDraw.Draw(sheet)
-    for number, result in enumerate(results):
+    for number, result in enumerate(drawn):
         x, y = number % columns * size, number // columns * height
-        if result.picture is not None:
-            sheet.paste(_tile(result.picture), (x, y))
-        for row, text in enumerate(_label(result, size // (line // 2))):
-            pen.text((x + line // 2, y + size + row * line), text, fill=(225, 225, 225), font=font)
+        assert result.picture is not None
+        sheet.paste(_tile(result.picture), (x, y))
+        for row, text in enumerate(_label(result, size * 2 // line)):
+            pen.text((x + line // 2, y + size + row * line), text, fill=INK[1], font=font)
+    for row, text in enumerate(notes):
+        pen.text((line // 2, rows * height + row * line), text, fill=INK[1], font=font)
     try:
         sheet.save(out)
     except (OSError, ValueError) as error:
@@ -168,16 +176,16 @@ def _tile(linear: np.ndarray) -> Image.Image:
 
 
 def _label(result: Result, width: int) -> list[str]:
-    name = f"{result.name} ({result.preset})" if result.preset else result.name
-    texts = [name[-width:]]
-    if result.figures is not None:
-        f = result.figures
-        texts += [
-            f"span {f.span:.0%}   median {f.median:.0f}",
-            f"clipped {f.clipped:.1%}   shadowed {f.shadowed:.0%}",
-        ]
-    verdict = result.verdict
-    return [*texts, *(verdict[i : i + width] for i in range(0, len(verdict), width))][:LABEL_LINES]
+    """Return the lines below a picture: name and preset, the five figures in two lines, and the verdict."""
+    assert result.figures is not None
+    f, name = result.figures, result.name if len(result.name) <= width else "…" + result.name[1 - width :]
+    figures = f"span {f.span:.0%}   median {f.median:.0f}   {result.preset}"
+    return [
+        name,
+        figures,
+        f"clipped {f.clipped:.1%}   shadowed {f.shadowed:.0%}",
+        *textwrap.wrap(result.verdict, width),
+    ][:LABEL_LINES]
 
 
 def print_table(results: Sequence[Result]) -> None:
@@ -220,7 +228,9 @@ def contact_sheet(folder: Path, out: Path, size: int = 384, frames: int = 4) -> 
     """
     results = []
     for result in draw_all(folder, size, frames):
-        Console(stderr=True, highlight=False).print(f"{result.name}: {result.verdict}", markup=False)
+        Console(stderr=True, highlight=False).print(
+            f"{result.name}: {result.verdict}", markup=False, soft_wrap=True
+        )
         results.append(result)
     if not results:
         raise LoadError(folder, "there are no volumes in this folder", "name a folder of data sets")

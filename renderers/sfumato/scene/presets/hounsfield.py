@@ -8,19 +8,20 @@ from .preset import Preset
 RGB = tuple[float, float, float]
 SKIN: RGB = (0.52, 0.30, 0.20)
 MUSCLE: RGB = (0.36, 0.095, 0.06)
+MARROW: RGB = (0.44, 0.17, 0.11)
 BLOOD: RGB = (0.55, 0.06, 0.04)
 CARTILAGE: RGB = (0.54, 0.38, 0.24)
-BONE: RGB = (0.58, 0.51, 0.37)
-DENSE_BONE: RGB = (0.64, 0.58, 0.46)
+BONE: RGB = (0.51, 0.44, 0.315)
+DENSE_BONE: RGB = (0.56, 0.505, 0.395)
 METAL: RGB = (0.55, 0.58, 0.60)
 LUNG: RGB = (0.60, 0.33, 0.29)
 
 Points = list[tuple[float, RGB, float]]
 
 _BONE: Points = [
-    (150, MUSCLE, 0.0),
-    (230, MUSCLE, 0.2),
-    (320, CARTILAGE, 0.7),
+    (160, MARROW, 0.0),
+    (240, MARROW, 0.15),
+    (320, CARTILAGE, 0.6),
     (430, BONE, 0.92),
     (1200, DENSE_BONE, 0.95),
     (2500, DENSE_BONE, 0.95),

@@ -9,8 +9,8 @@ from .values import Levels
 RGB = tuple[float, float, float]
 #: Surface, middle and brightest part of the subject.
 Palette = tuple[RGB, RGB, RGB]
-TISSUE: Palette = ((0.48, 0.29, 0.20), (0.54, 0.40, 0.30), (0.62, 0.55, 0.46))
-CLAY: Palette = ((0.44, 0.27, 0.15), (0.54, 0.43, 0.28), (0.64, 0.60, 0.52))
+TISSUE: Palette = ((0.46, 0.27, 0.185), (0.51, 0.37, 0.275), (0.58, 0.50, 0.41))
+CLAY: Palette = ((0.42, 0.26, 0.145), (0.52, 0.41, 0.27), (0.62, 0.58, 0.50))
 AMBER: Palette = ((0.44, 0.21, 0.08), (0.52, 0.31, 0.13), (0.62, 0.47, 0.28))
 RED: Palette = ((0.52, 0.09, 0.055), (0.56, 0.13, 0.08), (0.62, 0.30, 0.21))
 
