@@ -46,9 +46,25 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
-    "Camera", "ClipPlane", "CropBox", "Document", "GpuError", "Light", "LoadError", "Quality", "Region", "Renderer",
-    "Scene", "SceneError", "SfumatoError", "TransferFunction", "TransferPoint", "Volume", "VolumeInfo",
-    "load", "render",
+    "Camera",
+    "ClipPlane",
+    "CropBox",
+    "Document",
+    "GpuError",
+    "Light",
+    "LoadError",
+    "Quality",
+    "Region",
+    "Renderer",
+    "Scene",
+    "SceneError",
+    "SfumatoError",
+    "TransferFunction",
+    "TransferPoint",
+    "Volume",
+    "VolumeInfo",
+    "load",
+    "render",
 ]
 
 #: Names that bring GL or readers along; imported when first used, so that ``import sfumato`` stays quick.

@@ -96,7 +96,9 @@ class Renderer:
         fbo = self.device.ctx.framebuffer([texture])
         fbo.use()
         self._resolve.bind(u_sum=total.texture)
-        self._resolve.set(u_scale=1 / frames, u_exposure=2.0**scene.exposure, u_background=_premultiplied(scene))
+        self._resolve.set(
+            u_scale=1 / frames, u_exposure=2.0**scene.exposure, u_background=_premultiplied(scene)
+        )
         self._resolve.draw()
         self.device.wait()
         pixels = np.empty((height, width, 4), dtype=np.uint8)
@@ -165,7 +167,9 @@ class Accumulation:
         """Return linear light so far: float32, premultiplied, before exposure; shape (height, width, 4)."""
         self.renderer.device.make_current()
         light = self._sum().read() / np.float32(self.frames)
-        return np.asarray(light + (1 - light[..., 3:]) * np.asarray(_premultiplied(self.scene), dtype=np.float32))
+        return np.asarray(
+            light + (1 - light[..., 3:]) * np.asarray(_premultiplied(self.scene), dtype=np.float32)
+        )
 
     def _sum(self) -> Target:
         if self._total is None or self.frames == 0:

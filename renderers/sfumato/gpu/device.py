@@ -73,7 +73,7 @@ class Device:
         """
         if threading.get_ident() != self._thread:
             raise GpuError("a device was used on another thread than its own", "make one Renderer per thread")
-        self.ctx.__enter__()
+        self.ctx.__enter__()  # type: ignore[no-untyped-call]
 
     def attach_layer(self, attachment: int, texture: Any, layer: int) -> None:
         """Attach one layer of an array or 3D texture to the bound framebuffer (moderngl cannot)."""
@@ -92,10 +92,15 @@ class Device:
             for _ in range(MAX_FENCE_WAITS):
                 answer = self._client_wait(fence, GL_SYNC_FLUSH_COMMANDS_BIT, int(FENCE_SECONDS * 1e9))
                 if answer == GL_WAIT_FAILED:
-                    raise GpuError("the graphics driver stopped answering", "try a smaller picture, or restart the program")
+                    raise GpuError(
+                        "the graphics driver stopped answering",
+                        "try a smaller picture, or restart the program",
+                    )
                 if answer != GL_TIMEOUT_EXPIRED:
                     return
-            raise GpuError("the graphics driver did not finish a pass in two minutes", "try a smaller picture")
+            raise GpuError(
+                "the graphics driver did not finish a pass in two minutes", "try a smaller picture"
+            )
         finally:
             self._delete_sync(fence)
 
@@ -110,7 +115,9 @@ class Device:
             raise GpuError(doing, f"{error} on {self.name}") from None
         code = self._get_error()
         if code:
-            name = {0x0505: "out of GPU memory", 0x0506: "incomplete framebuffer"}.get(code, f"OpenGL error 0x{code:04x}")
+            name = {0x0505: "out of GPU memory", 0x0506: "incomplete framebuffer"}.get(
+                code, f"OpenGL error 0x{code:04x}"
+            )
             raise GpuError(doing, f"{name} on {self.name}; use a smaller picture or volume")
 
     def collect(self) -> None:
@@ -128,7 +135,7 @@ class Device:
 
 
 def _create_context() -> moderngl.Context:
-    backends: list[dict[str, str]] = [{"backend": "egl"}, {}] if sys.platform.startswith("linux") else [{}]
+    backends: list[dict[str, Any]] = [{"backend": "egl"}, {}] if sys.platform.startswith("linux") else [{}]
     reasons = []
     for backend in backends:
         try:

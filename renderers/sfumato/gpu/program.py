@@ -69,7 +69,9 @@ class Program:
         try:
             self._program = device.ctx.program(vertex_shader=corners, fragment_shader=text)
         except Exception as error:  # moderngl raises its own bare Error
-            raise GpuError(f"shader {fragment.file} does not compile", _name_lines(str(error), files)) from None
+            raise GpuError(
+                f"shader {fragment.file} does not compile", _name_lines(str(error), files)
+            ) from None
         self._array = device.ctx.vertex_array(self._program, [])
         self._mesh: Any = None
         self._uniforms: dict[str, Any] = {name: self._program[name] for name in self._program}
@@ -107,7 +109,7 @@ class Program:
         self._array.render(moderngl.TRIANGLES, vertices=3)
 
     def draw_rects(self, count: int) -> None:
-        """Draw rectangles, six vertices each, placed by the vertex shader (software renderers are slow at instances)."""
+        """Draw rectangles, six vertices each, placed by the vertex shader (instances are slow in software)."""
         self._take_units()
         self._array.render(moderngl.TRIANGLES, vertices=6 * count)
 
@@ -144,6 +146,7 @@ def _is_sampler(member: Any) -> bool:
 
 def _name_lines(message: str, files: list[str]) -> str:
     """Replace a compiler's ``file-number:line`` by our file's name."""
+
     def named(match: re.Match[str]) -> str:
         number = int(match[1])
         return f"{files[number]}:{match[2]}" if number < len(files) else match[0]

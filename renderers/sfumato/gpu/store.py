@@ -56,7 +56,9 @@ class Store:
 
     def listing(self) -> list[tuple[str, int]]:
         """Return what is kept and its bytes, the largest first."""
-        rows = [(str(key[0] if isinstance(key, tuple) else key), size) for key, (_, size) in self._items.items()]
+        rows = [
+            (str(key[0] if isinstance(key, tuple) else key), size) for key, (_, size) in self._items.items()
+        ]
         return sorted(rows, key=lambda row: -row[1])
 
     def clear(self) -> None:

@@ -52,7 +52,9 @@ class TransferTables:
         self.extinction.release()
 
 
-def make_tables(device: Device, volume: Volume, texture: VolumeTexture, transfer: TransferFunction) -> TransferTables:
+def make_tables(
+    device: Device, volume: Volume, texture: VolumeTexture, transfer: TransferFunction
+) -> TransferTables:
     """Build and upload the tables of a transfer function for a volume's values."""
     low, high = texture.domain
     if transfer.regions:
@@ -74,9 +76,14 @@ def _integral(samples: np.ndarray) -> np.ndarray:
     return np.concatenate([np.zeros((1, samples.shape[1])), np.cumsum(steps, axis=0)]).astype(np.float32)
 
 
-def _tables_2d(device: Device, volume: Volume, texture: VolumeTexture, transfer: TransferFunction) -> TransferTables:
+def _tables_2d(
+    device: Device, volume: Volume, texture: VolumeTexture, transfer: TransferFunction
+) -> TransferTables:
     low, high = texture.domain
-    top = max(max((g for _, g in r.points), default=0.0) if r.shape == "polygon" else r.gradient[1] for r in transfer.regions)
+    top = max(
+        max((g for _, g in r.points), default=0.0) if r.shape == "polygon" else r.gradient[1]
+        for r in transfer.regions
+    )
     top = max(top, 1e-9)
     values = np.linspace(low, high, ENTRIES_2D)[None, :]
     # Square root spacing: most voxels have small gradients.
@@ -85,11 +92,16 @@ def _tables_2d(device: Device, volume: Volume, texture: VolumeTexture, transfer:
     tau = transfer.extinction(sampled[..., 3], volume.unit_distance)[..., None]
     color = np.concatenate([sampled[..., :3] * tau, tau], axis=-1).astype(np.float32)
     emission = np.concatenate([sampled[..., 4:] * tau, tau], axis=-1).astype(np.float32)
-    visible = np.interp(np.linspace(0, 1, ENTRIES), np.linspace(0, 1, ENTRIES_2D), (tau[..., 0] > 0).any(axis=0)) > 0
+    visible = (
+        np.interp(np.linspace(0, 1, ENTRIES), np.linspace(0, 1, ENTRIES_2D), (tau[..., 0] > 0).any(axis=0))
+        > 0
+    )
     textures = [_upload(device, table) for table in (color, emission)]
     emits = bool((sampled[..., 4:] * tau).any())
     extinction = _upload(device, np.zeros((1, 2, 1), dtype=np.float32))
-    return TransferTables(textures[0], textures[1], extinction, visible, top / (high - low), emits, 2 * color.nbytes)
+    return TransferTables(
+        textures[0], textures[1], extinction, visible, top / (high - low), emits, 2 * color.nbytes
+    )
 
 
 def _upload(device: Device, table: np.ndarray) -> Any:

@@ -54,17 +54,36 @@ class Camera:
     position: Annotated[Vec3, Param("Place of the eye, world space", unit="mm")] = (0.0, -1000.0, 0.0)
     focal_point: Annotated[Vec3, Param("Point in the middle of the picture", unit="mm")] = (0.0, 0.0, 0.0)
     view_up: Annotated[Vec3, Param("Direction that is up in the picture")] = (0.0, 0.0, 1.0)
-    view_angle: Annotated[float, Param("Vertical opening of a perspective view", label="Lens", unit="deg", gt=0, lt=170, soft=(5, 90), tab="view")] = 30.0
-    parallel_projection: Annotated[bool, Param("Orthographic instead of perspective", label="Orthographic", tab="view")] = False
-    parallel_scale: Annotated[float, Param("Half the picture's height in an orthographic view", unit="mm", gt=0)] = 1.0
-    window_center: Annotated[tuple[float, float], Param("Centre of the picture in half widths and heights, for crops and tiles")] = (0.0, 0.0)
+    view_angle: Annotated[
+        float,
+        Param(
+            "Vertical opening of a perspective view",
+            label="Lens",
+            unit="deg",
+            gt=0,
+            lt=170,
+            soft=(5, 90),
+            tab="view",
+        ),
+    ] = 30.0
+    parallel_projection: Annotated[
+        bool, Param("Orthographic instead of perspective", label="Orthographic", tab="view")
+    ] = False
+    parallel_scale: Annotated[
+        float, Param("Half the picture's height in an orthographic view", unit="mm", gt=0)
+    ] = 1.0
+    window_center: Annotated[
+        tuple[float, float], Param("Centre of the picture in half widths and heights, for crops and tiles")
+    ] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         check(self)
         view = np.subtract(self.focal_point, self.position)
         if not np.linalg.norm(view) > 0:
             raise SceneError("focal_point", self.focal_point, "it must differ from the camera's position")
-        if np.linalg.norm(np.cross(view / np.linalg.norm(view), self.view_up)) < 1e-6 * max(1e-30, float(np.linalg.norm(self.view_up))):
+        if np.linalg.norm(np.cross(view / np.linalg.norm(view), self.view_up)) < 1e-6 * max(
+            1e-30, float(np.linalg.norm(self.view_up))
+        ):
             raise SceneError("view_up", self.view_up, "it must not be zero or parallel to the view")
 
     @property
@@ -83,7 +102,9 @@ class Camera:
 
     def half_extent(self, aspect: float) -> tuple[float, float]:
         """Return half the picture's width and height: in mm (orthographic) or as tangents (perspective)."""
-        half = self.parallel_scale if self.parallel_projection else math.tan(math.radians(self.view_angle) / 2)
+        half = (
+            self.parallel_scale if self.parallel_projection else math.tan(math.radians(self.view_angle) / 2)
+        )
         return half * aspect, half
 
     def cropped(self, left: float, bottom: float, right: float, top: float) -> Camera:
@@ -131,7 +152,9 @@ class Camera:
         side, up = STANDARD_VIEWS[view] if isinstance(view, str) else view
         points = np.asarray(bounds, dtype=float)
         if points.shape == (2, 3):
-            points = np.array([[points[i, 0], points[j, 1], points[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+            points = np.array(
+                [[points[i, 0], points[j, 1], points[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+            )
         center = (points.min(axis=0) + points.max(axis=0)) / 2
         back = np.asarray(side, dtype=float)
         right = np.cross(up, back)
@@ -144,8 +167,12 @@ class Camera:
         distance = max(distance, half / tangent * 0.1)
         position = center + back * distance
         return Camera(
-            position=tuple(position), focal_point=tuple(center), view_up=up, view_angle=view_angle,
-            parallel_projection=parallel_projection, parallel_scale=half,
+            position=tuple(position),
+            focal_point=tuple(center),
+            view_up=up,
+            view_angle=view_angle,
+            parallel_projection=parallel_projection,
+            parallel_scale=half,
         )
 
     @staticmethod

@@ -37,32 +37,62 @@ class Light:
         If a value is out of range, or tilt and aperture put the light neither before nor behind the subject.
     """
 
-    kind: Annotated[str, Param("Kind of lamp", choices=("directional", "point", "spot", "area"))] = "directional"
+    kind: Annotated[str, Param("Kind of lamp", choices=("directional", "point", "spot", "area"))] = (
+        "directional"
+    )
     tilt: Annotated[
         float,
         Param(
             "Angle between the light and the viewing axis; 0 is a headlamp",
-            label="Tilt", unit="deg", ge=0, le=180, soft=(0, 180), source="Soltesova2010, Fig. 2", stale="kernel", tab="light",
+            label="Tilt",
+            unit="deg",
+            ge=0,
+            le=180,
+            soft=(0, 180),
+            source="Soltesova2010, Fig. 2",
+            stale="kernel",
+            tab="light",
         ),
     ] = 37.0
     aperture: Annotated[
         float,
         Param(
             "Half angle of the light's cone: the softness of its shadows",
-            label="Aperture", unit="deg", gt=0, lt=90, soft=(1, 60), source="Soltesova2010, Eq. 2", stale="kernel", tab="light",
+            label="Aperture",
+            unit="deg",
+            gt=0,
+            lt=90,
+            soft=(1, 60),
+            source="Soltesova2010, Eq. 2",
+            stale="kernel",
+            tab="light",
         ),
     ] = 20.0
     rotation: Annotated[
         float,
         Param(
             "Direction of the light in the picture, counter-clockwise from the right; 135 is top left",
-            label="Rotation", unit="deg", ge=-360, le=720, soft=(0, 360), source="Soltesova2010, Eq. 12", stale="kernel", tab="light",
+            label="Rotation",
+            unit="deg",
+            ge=-360,
+            le=720,
+            soft=(0, 360),
+            source="Soltesova2010, Eq. 12",
+            stale="kernel",
+            tab="light",
         ),
     ] = 135.0
     color: Annotated[tuple[float, float, float], Param("Colour, linear RGB", ge=0, le=100)] = (1.0, 1.0, 1.0)
     intensity: Annotated[
         float,
-        Param("1 lights a facing surface to its own colour", label="Intensity", ge=0, le=100, soft=(0, 3), tab="light"),
+        Param(
+            "1 lights a facing surface to its own colour",
+            label="Intensity",
+            ge=0,
+            le=100,
+            soft=(0, 3),
+            tab="light",
+        ),
     ] = 1.0
     attached: Annotated[str, Param("What the lamp moves with", choices=("viewer", "patient"))] = "viewer"
     name: str = "key"
@@ -71,7 +101,10 @@ class Light:
     radius: Annotated[float, Param("Radius of a point or spot lamp", unit="mm", gt=0)] = 1.0
     direction: Annotated[Vec3, Param("Direction in which a spot or area lamp shines")] = (0.0, 1.0, 0.0)
     spread: Annotated[float, Param("Half angle of a spot's beam", unit="deg", gt=0, lt=90)] = 30.0
-    size: Annotated[tuple[float, float], Param("Width and height of an area lamp", unit="mm", gt=0)] = (10.0, 10.0)
+    size: Annotated[tuple[float, float], Param("Width and height of an area lamp", unit="mm", gt=0)] = (
+        10.0,
+        10.0,
+    )
 
     def __post_init__(self) -> None:
         check(self)

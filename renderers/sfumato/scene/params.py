@@ -142,7 +142,9 @@ def _coerce_tuple(value: Any, hint: Any, path: str, param: Param | None) -> tupl
         kinds = list(args)
         if len(items) != len(kinds):
             raise SceneError(path, value, f"exactly {len(kinds)} values are needed here")
-    return tuple(coerce(v, k, f"{path}.{i}", param) for i, (v, k) in enumerate(zip(items, kinds, strict=True)))
+    return tuple(
+        coerce(v, k, f"{path}.{i}", param) for i, (v, k) in enumerate(zip(items, kinds, strict=True))
+    )
 
 
 def coerce(value: Any, hint: Any, path: str, param: Param | None = None) -> Any:
@@ -243,5 +245,7 @@ def _value_from_json(hint: Any, value: Any, path: str) -> Any:
         kinds = [args[0]] * len(value) if len(args) == 2 and args[1] is Ellipsis else list(args)
         if len(kinds) != len(value):
             raise SceneError(path, value, f"exactly {len(kinds)} values are needed here")
-        return tuple(_value_from_json(k, v, f"{path}.{i}") for i, (k, v) in enumerate(zip(kinds, value, strict=True)))
+        return tuple(
+            _value_from_json(k, v, f"{path}.{i}") for i, (k, v) in enumerate(zip(kinds, value, strict=True))
+        )
     return value

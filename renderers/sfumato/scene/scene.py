@@ -72,10 +72,32 @@ class Scene:
     camera: Camera | None = None
     lights: tuple[Light, ...] = (Light(),)
     technique: Any = "multidirectional"
-    step: Annotated[float, Param("Sampling distance", label="Sampling", unit="voxel", ge=0.05, le=16, soft=(0.25, 4), tab="view", level="more")] = 0.5
-    background: Annotated[tuple[float, float, float, float], Param("Linear RGB and alpha", ge=0, le=1)] = (0.0, 0.0, 0.0, 0.0)
-    exposure: Annotated[float, Param("Brightness in stops", label="Exposure", unit="stops", ge=-16, le=16, soft=(-3, 3), tab="view")] = 0.0
-    frames: Annotated[int, Param("Jittered frames accumulated in a still picture", label="Frames", ge=1, le=1024)] = 1
+    step: Annotated[
+        float,
+        Param(
+            "Sampling distance",
+            label="Sampling",
+            unit="voxel",
+            ge=0.05,
+            le=16,
+            soft=(0.25, 4),
+            tab="view",
+            level="more",
+        ),
+    ] = 0.5
+    background: Annotated[tuple[float, float, float, float], Param("Linear RGB and alpha", ge=0, le=1)] = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+    exposure: Annotated[
+        float,
+        Param("Brightness in stops", label="Exposure", unit="stops", ge=-16, le=16, soft=(-3, 3), tab="view"),
+    ] = 0.0
+    frames: Annotated[
+        int, Param("Jittered frames accumulated in a still picture", label="Frames", ge=1, le=1024)
+    ] = 1
     clip: tuple[ClipPlane, ...] = ()
     crop: CropBox = field(default_factory=CropBox)
     geometry: tuple[Any, ...] = ()
@@ -171,7 +193,11 @@ class Scene:
             raise SceneError("scene", data, "an object is needed here")
         version = data.get("sfumato")
         if not isinstance(version, int) or not 1 <= version <= FORMAT_VERSION:
-            raise SceneError("sfumato", version, f"this program reads scene format 1 to {FORMAT_VERSION}; a newer Sfumato may read it")
+            raise SceneError(
+                "sfumato",
+                version,
+                f"this program reads scene format 1 to {FORMAT_VERSION}; a newer Sfumato may read it",
+            )
         known = fields_of(Scene)
         values: dict[str, Any] = {"volume": volume}
         for name, value in data.items():
@@ -207,7 +233,9 @@ class Scene:
             temporary.replace(target)
         except OSError as error:
             temporary.unlink(missing_ok=True)
-            raise SceneError("path", str(target), f"the scene could not be written: {error.strerror or error}") from None
+            raise SceneError(
+                "path", str(target), f"the scene could not be written: {error.strerror or error}"
+            ) from None
 
     @staticmethod
     def open(path: str | os.PathLike[str], volume: Volume | None = None) -> Scene:
@@ -231,13 +259,21 @@ class Scene:
         except OSError as error:
             raise LoadError(source, error.strerror or str(error), "check the path") from None
         except (ValueError, RecursionError) as error:
-            raise LoadError(source, f"not a scene file ({error})", "open a .sfumato file or a volume") from None
+            raise LoadError(
+                source, f"not a scene file ({error})", "open a .sfumato file or a volume"
+            ) from None
         if volume is None and isinstance(data, dict) and data.get("volume"):
             volume = _find_volume(data["volume"], source)
         return Scene.from_json(data, volume)
 
 
-_NESTED: dict[str, type] = {"transfer": TransferFunction, "camera": Camera, "crop": CropBox, "lights": Light, "clip": ClipPlane}
+_NESTED: dict[str, type] = {
+    "transfer": TransferFunction,
+    "camera": Camera,
+    "crop": CropBox,
+    "lights": Light,
+    "clip": ClipPlane,
+}
 
 
 def _nested(name: str, value: Any) -> Any:
@@ -264,12 +300,18 @@ def _find_volume(reference: Any, scene_path: Path) -> Volume:
     from ..io import load
 
     if not isinstance(reference, dict) or not isinstance(reference.get("path"), str) or not reference["path"]:
-        raise LoadError(scene_path, "the scene does not say where its volume is", "open the volume first, then the scene")
+        raise LoadError(
+            scene_path, "the scene does not say where its volume is", "open the volume first, then the scene"
+        )
     name = reference["path"]
     volume = load(name if name.startswith("sample:") else scene_path.parent / name)
     wanted = reference.get("hash")
     if isinstance(wanted, str) and wanted != volume.key:
-        raise LoadError(scene_path.parent / name, "this is not the volume that the scene was made with (its content differs)", "open the volume by itself")
+        raise LoadError(
+            scene_path.parent / name,
+            "this is not the volume that the scene was made with (its content differs)",
+            "open the volume by itself",
+        )
     return volume
 
 
@@ -288,6 +330,7 @@ class _Branch(dict[str, Any]):
 
 def _changed(node: Any, changes: dict[str, Any], path: str) -> Any:
     """Return a copy of a dataclass or tuple in which the named children are changed."""
+
     def child(old: Any, change: Any, where: str) -> Any:
         return _changed(old, change, where) if isinstance(change, _Branch) else change
 
@@ -296,7 +339,11 @@ def _changed(node: Any, changes: dict[str, Any], path: str) -> Any:
         items = list(node)
         for name, change in changes.items():
             if not name.isdigit() or int(name) >= len(items):
-                raise SceneError(prefix + name, change if not isinstance(change, dict) else "", f"an index from 0 to {len(items) - 1} is needed" if items else "the list is empty")
+                raise SceneError(
+                    prefix + name,
+                    change if not isinstance(change, dict) else "",
+                    f"an index from 0 to {len(items) - 1} is needed" if items else "the list is empty",
+                )
             items[int(name)] = child(items[int(name)], change, prefix + name)
         return tuple(items)
     if not dataclasses.is_dataclass(node) or isinstance(node, Volume):
@@ -305,7 +352,11 @@ def _changed(node: Any, changes: dict[str, Any], path: str) -> Any:
     values = {}
     for name, change in changes.items():
         if name not in known:
-            raise SceneError(prefix + name, change if not isinstance(change, dict) else "", "unknown field; known: " + ", ".join(known))
+            raise SceneError(
+                prefix + name,
+                change if not isinstance(change, dict) else "",
+                "unknown field; known: " + ", ".join(known),
+            )
         values[name] = child(getattr(node, name), change, prefix + name)
     try:
         return dataclasses.replace(node, **values)  # type: ignore[type-var]
@@ -332,7 +383,9 @@ def parse_setting(scene: Scene, path: str, text: str) -> Any:
         where = ".".join(path.split(".")[: i + 1])
         if isinstance(node, tuple) and name.isdigit() and int(name) < len(node):
             node, hint, param = node[int(name)], Any, None
-        elif dataclasses.is_dataclass(node) and not isinstance(node, Volume) and name in fields_of(type(node)):
+        elif (
+            dataclasses.is_dataclass(node) and not isinstance(node, Volume) and name in fields_of(type(node))
+        ):
             f = fields_of(type(node))[name]
             node, hint, param = getattr(node, name), f.type, f.param
         else:

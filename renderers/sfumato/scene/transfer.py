@@ -6,6 +6,7 @@ Opacity ``alpha`` is given at a *unit distance* u, and extinction per mm is
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
@@ -28,7 +29,9 @@ class TransferPoint:
     value: float = 0.0
     color: Annotated[RGB, Param("Linear RGB", ge=0, le=1)] = (1.0, 1.0, 1.0)
     opacity: Annotated[float, Param("Opacity at unit distance", ge=0, le=1)] = 0.0
-    emission: Annotated[RGB, Param("Linear RGB given off per unit distance at full opacity", ge=0, le=1000)] = (0.0, 0.0, 0.0)
+    emission: Annotated[
+        RGB, Param("Linear RGB given off per unit distance at full opacity", ge=0, le=1000)
+    ] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -50,7 +53,9 @@ class Region:
         Fraction of the shape over which opacity fades to nothing at its edge, 0 to 1.
     """
 
-    shape: Annotated[str, Param("Shape", choices=("rectangle", "ellipse", "trapezoid", "polygon"))] = "rectangle"
+    shape: Annotated[str, Param("Shape", choices=("rectangle", "ellipse", "trapezoid", "polygon"))] = (
+        "rectangle"
+    )
     value: tuple[float, float] = (0.0, 1.0)
     gradient: tuple[float, float] = (0.0, 1.0)
     points: tuple[tuple[float, float], ...] = ()
@@ -63,7 +68,9 @@ class Region:
         check(self)
         if self.shape == "polygon" and len(self.points) < 3:
             raise SceneError("points", self.points, "a polygon needs at least three corners")
-        if self.shape != "polygon" and not (self.value[0] < self.value[1] and self.gradient[0] < self.gradient[1]):
+        if self.shape != "polygon" and not (
+            self.value[0] < self.value[1] and self.gradient[0] < self.gradient[1]
+        ):
             raise SceneError("value", (self.value, self.gradient), "each extent needs low < high")
 
     def coverage(self, value: np.ndarray, gradient: np.ndarray) -> np.ndarray:
@@ -98,7 +105,10 @@ class TransferFunction:
         For people.
     """
 
-    points: tuple[TransferPoint, ...] = (TransferPoint(0.0, (0, 0, 0), 0.0), TransferPoint(1.0, (1, 1, 1), 1.0))
+    points: tuple[TransferPoint, ...] = (
+        TransferPoint(0.0, (0, 0, 0), 0.0),
+        TransferPoint(1.0, (1, 1, 1), 1.0),
+    )
     unit_distance: Annotated[float | None, Param("Distance to which opacities refer", unit="mm", gt=0)] = None
     regions: tuple[Region, ...] = ()
     name: str = ""
@@ -108,11 +118,13 @@ class TransferFunction:
         if not self.points:
             raise SceneError("points", self.points, "at least one point is needed")
         values = [p.value for p in self.points]
-        if any(b < a for a, b in zip(values, values[1:], strict=False)):
+        if any(b < a for a, b in itertools.pairwise(values)):
             object.__setattr__(self, "points", tuple(sorted(self.points, key=lambda p: p.value)))
 
     @staticmethod
-    def from_points(points: Iterable[Sequence[Any]], unit_distance: float | None = None, name: str = "") -> TransferFunction:
+    def from_points(
+        points: Iterable[Sequence[Any]], unit_distance: float | None = None, name: str = ""
+    ) -> TransferFunction:
         """Make a function from tuples (value, linear rgb, opacity at unit distance[, emission rgb]).
 
         Raises
@@ -125,7 +137,9 @@ class TransferFunction:
             try:
                 made.append(TransferPoint(*point))
             except TypeError:
-                raise SceneError(f"transfer.points.{i}", point, "(value, (r, g, b), opacity[, (r, g, b)]) is needed") from None
+                raise SceneError(
+                    f"transfer.points.{i}", point, "(value, (r, g, b), opacity[, (r, g, b)]) is needed"
+                ) from None
             except SceneError as error:
                 raise SceneError(f"transfer.points.{i}.{error.path}", error.value, error.allowed) from None
         return TransferFunction(tuple(made), unit_distance, (), name)
@@ -142,7 +156,9 @@ class TransferFunction:
 
     def extinction(self, opacity: np.ndarray, unit_distance: float) -> np.ndarray:
         """Return extinction per mm of an opacity at unit distance (in mm)."""
-        return np.asarray(-np.log1p(-np.minimum(opacity, MAX_OPACITY)) / (self.unit_distance or unit_distance))
+        return np.asarray(
+            -np.log1p(-np.minimum(opacity, MAX_OPACITY)) / (self.unit_distance or unit_distance)
+        )
 
     def evaluate_2d(self, values: np.ndarray, gradients: np.ndarray) -> np.ndarray:
         """Return colour, opacity and emission on a grid of values and gradient magnitudes.

@@ -76,7 +76,9 @@ class Volume:
         spacing = _vector("volume.spacing", self.spacing)
         if min(spacing) <= 0:
             raise SceneError("volume.spacing", self.spacing, "three lengths > 0 mm")
-        origin = tuple(s / 2 for s in spacing) if self.origin is None else _vector("volume.origin", self.origin)
+        origin = (
+            tuple(s / 2 for s in spacing) if self.origin is None else _vector("volume.origin", self.origin)
+        )
         direction = np.asarray(IDENTITY if self.direction is None else self.direction, dtype=float)
         if direction.shape != (3, 3) or not np.allclose(direction.T @ direction, np.eye(3), atol=1e-3):
             raise SceneError("volume.direction", self.direction, "a 3 x 3 matrix with orthonormal columns")
@@ -87,7 +89,11 @@ class Volume:
         if notices:
             known = self.info
             object.__setattr__(
-                self, "info", VolumeInfo(known.path, known.modality, known.orientation_known, known.notices + notices, known.name)
+                self,
+                "info",
+                VolumeInfo(
+                    known.path, known.modality, known.orientation_known, known.notices + notices, known.name
+                ),
             )
 
     # -- identity ---------------------------------------------------------------------------------
@@ -95,7 +101,9 @@ class Volume:
     def key(self) -> str:
         """Hash of voxels and geometry: the same content has the same key, wherever it was read from."""
         digest = hashlib.blake2b(digest_size=16)
-        digest.update(repr((self.data.shape, self.data.dtype.str, self.spacing, self.origin, self.direction)).encode())
+        digest.update(
+            repr((self.data.shape, self.data.dtype.str, self.spacing, self.origin, self.direction)).encode()
+        )
         digest.update(np.ascontiguousarray(self.data).data)
         return digest.hexdigest()
 
@@ -142,7 +150,14 @@ class Volume:
 
     def corners(self, low: Vec3 = (0, 0, 0), high: Vec3 = (1, 1, 1)) -> np.ndarray:
         """Return the eight corners, in world mm, of a box given in texture coordinates; shape (8, 3)."""
-        box = np.array([[(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+        box = np.array(
+            [
+                [(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]]
+                for i in (0, 1)
+                for j in (0, 1)
+                for k in (0, 1)
+            ]
+        )
         matrix = self.world_from_texture
         return np.asarray(box @ matrix[:3, :3].T + matrix[:3, 3])
 
@@ -185,7 +200,11 @@ def _canonical_voxels(data: Any) -> tuple[np.ndarray, tuple[str, ...]]:
     if array.dtype == bool:
         array = array.astype(np.uint8)
     if array.ndim != 3 or array.size == 0 or array.dtype.kind not in "uif":
-        raise SceneError("volume.data", f"array of shape {array.shape} and type {array.dtype}", "a non-empty numeric array (z, y, x) is needed")
+        raise SceneError(
+            "volume.data",
+            f"array of shape {array.shape} and type {array.dtype}",
+            "a non-empty numeric array (z, y, x) is needed",
+        )
     notices: tuple[str, ...] = ()
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))
@@ -200,7 +219,11 @@ def _canonical_voxels(data: Any) -> tuple[np.ndarray, tuple[str, ...]]:
             array = np.where(bad, array[~bad].min(), array).astype(np.float32)
             notices = (f"{count} voxels were NaN or infinite and count as the smallest value.",)
     if array.base is not None or array.flags.writeable:
-        array = np.array(array, order="C", copy=True) if array is data or array.base is not None else np.ascontiguousarray(array)
+        array = (
+            np.array(array, order="C", copy=True)
+            if array is data or array.base is not None
+            else np.ascontiguousarray(array)
+        )
     array.flags.writeable = False
     return array, notices
 

@@ -63,12 +63,14 @@ def kernel_moments(tilt: float, aperture: float, falloff: str = "linear") -> Mom
     weight = area * (1 - k if falloff == "linear" else np.exp(-(k**2) / (2 * GAUSSIAN_SIGMA**2)))
     weight /= weight.sum()
     mean = float((weight * x).sum())
-    return Moments(math.tan(alpha) + mean, float((weight * (x - mean) ** 2).sum()), float((weight * y**2).sum()))
+    return Moments(
+        math.tan(alpha) + mean, float((weight * (x - mean) ** 2).sum()), float((weight * y**2).sum())
+    )
 
 
 @dataclass(frozen=True)
 class Stencil:
-    """Pairs of whole-texel offsets and their weights: ``center`` for the texel itself, ``weights[k]`` for each of +-``taps[k]``."""
+    """Whole-texel offsets and weights: ``center`` for the texel itself, ``weights[k]`` for each of +-``taps[k]``."""
 
     center: float
     taps: tuple[tuple[int, int], ...]
@@ -86,7 +88,9 @@ def stencil_for(xx: float, xy: float, yy: float) -> Stencil:
     while True:
         stencil = _selling(xx / scale**2, xy / scale**2, yy / scale**2)
         if stencil.center >= 0.0:
-            return Stencil(stencil.center, tuple((x * scale, y * scale) for x, y in stencil.taps), stencil.weights)
+            return Stencil(
+                stencil.center, tuple((x * scale, y * scale) for x, y in stencil.taps), stencil.weights
+            )
         scale += 1
 
 
@@ -110,14 +114,16 @@ def _selling(xx: float, xy: float, yy: float) -> Stencil:
 
 
 def cone_directions(tilt: float, aperture: float, count: int) -> np.ndarray:
-    """Return unit vectors uniform in solid angle in a cone; shape (count, 3): along L', across it, towards the eye."""
+    """Return directions uniform in solid angle in a cone; shape (count, 3): along L', across, towards the eye."""
     theta, alpha = math.radians(aperture), math.radians(tilt)
     k = np.arange(count) + 0.5
     z = 1 - k / count * (1 - math.cos(theta))
     phi = k * math.pi * (3 - math.sqrt(5))
     r = np.sqrt(np.maximum(0, 1 - z**2))
     x, y = r * np.cos(phi), r * np.sin(phi)
-    return np.stack([x * math.cos(alpha) + z * math.sin(alpha), y, -x * math.sin(alpha) + z * math.cos(alpha)], axis=1)
+    return np.stack(
+        [x * math.cos(alpha) + z * math.sin(alpha), y, -x * math.sin(alpha) + z * math.cos(alpha)], axis=1
+    )
 
 
 #: Directions over which secants are averaged; more change nothing at four digits.
@@ -126,15 +132,15 @@ SECANT_DIRECTIONS = 256
 
 @functools.lru_cache(maxsize=256)
 def secants(tilt: float, aperture: float) -> np.ndarray:
-    """Return the secants of a cone's directions against the slices' normal (a cone from behind: their absolute values)."""
+    """Return the secants, without sign, of a cone's directions against the slices' normal."""
     cosines = np.abs(cone_directions(tilt, aperture, SECANT_DIRECTIONS)[:, 2])
     result = 1 / np.maximum(cosines, 1e-3)
     result.flags.writeable = False
-    return result
+    return np.asarray(result)
 
 
 def lit_surface(tilt: float, aperture: float) -> float:
-    """Return what a solid surface facing the viewer sends back of a light of intensity 1, before normalisation: <1 / (1 + s)>."""
+    """Return what a solid surface that faces the viewer sends back of a light, not normalised: <1 / (1 + s)>."""
     return float(np.mean(1 / (1 + secants(tilt, aperture))))
 
 

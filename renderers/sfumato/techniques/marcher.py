@@ -43,7 +43,9 @@ def prepare_material(frame: Frame) -> Material:
     store, device, volume, transfer = frame.device.store, frame.device, frame.volume, frame.transfer
     texture = store.get(("volume", volume.key), lambda: upload_volume(device, volume), lambda t: t.size)
     key = (volume.key, transfer)
-    tables = store.get(("transfer function", *key), lambda: make_tables(device, volume, texture, transfer), lambda t: t.size)
+    tables = store.get(
+        ("transfer function", *key), lambda: make_tables(device, volume, texture, transfer), lambda t: t.size
+    )
     empty = store.get(
         ("empty space", *key),
         lambda: map_empty_space(device, volume, occupied_blocks(texture, tables.visible)),
@@ -63,7 +65,8 @@ def bind_material(program: Program, material: Material, frame: Frame) -> None:
     volume, tables = frame.volume, material.tables
     program.bind(
         u_volume=material.volume.texture, u_distance=material.empty.texture,
-        u_integral=tables.color, u_emission=tables.emission, u_extinction=tables.extinction, u_table2d=tables.color, u_emission2d=tables.emission,
+        u_integral=tables.color, u_emission=tables.emission, u_extinction=tables.extinction,
+        u_table2d=tables.color, u_emission2d=tables.emission,
     )  # fmt: skip
     dims = np.asarray(volume.dims)
     program.set(
@@ -109,10 +112,13 @@ class Marcher:
         """Return the program of a variant, compiling it when first asked for."""
         defines = (
             ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
-            ("NEAR", variant.near), ("PHONG", variant.phong), ("EMISSION", int(material.tables.emits)), *material_defines(material),
+            ("NEAR", variant.near), ("PHONG", variant.phong), ("EMISSION", int(material.tables.emits)),
+            *material_defines(material),
         )  # fmt: skip
         if defines not in self._programs:
-            self._programs[defines] = Program(self.device, ShaderSource("techniques/march.frag.glsl", defines))
+            self._programs[defines] = Program(
+                self.device, ShaderSource("techniques/march.frag.glsl", defines)
+            )
         return self._programs[defines]
 
     def begin(self, frame: Frame) -> None:
@@ -121,7 +127,14 @@ class Marcher:
             self._release_pair()
             self._pair = (Target(self.device, frame.size), Target(self.device, frame.size))
 
-    def march(self, frame: Frame, program: Program, segments: tuple[int, int], box: tuple[int, int, int, int], start: bool) -> Iterator[None]:
+    def march(
+        self,
+        frame: Frame,
+        program: Program,
+        segments: tuple[int, int],
+        box: tuple[int, int, int, int],
+        start: bool,
+    ) -> Iterator[None]:
         """March a range of segments over a box of pixels (x0, y0, x1, y1), yielding after each piece."""
         assert self._pair is not None
         source, target = self._pair
@@ -137,7 +150,7 @@ class Marcher:
             target.fbo.scissor = (x0, y, x1 - x0, min(rows, y1 - y))
             program.draw()
             self.device.wait()
-            target.fbo.scissor = None
+            target.fbo.scissor = (0, 0, *target.size)
             yield
         self._pair = (target, source)
 
@@ -200,7 +213,10 @@ def pixel_box(frame: Frame, corners: np.ndarray) -> tuple[int, int, int, int]:
         if depth.min() <= near_depth(frame):
             return 0, 0, width, height
         at = at / depth
-    half, center = np.asarray(frame.camera.half_extent(width / height)), np.asarray(frame.camera.window_center)
+    half, center = (
+        np.asarray(frame.camera.half_extent(width / height)),
+        np.asarray(frame.camera.window_center),
+    )
     pixels = (at[:, :2] / half - center + 1) / 2 * np.array([width, height])
     low, high = np.floor(pixels.min(axis=0)) - 1, np.ceil(pixels.max(axis=0)) + 1
     x0, y0 = np.clip(low, 0, (width, height)).astype(int)
@@ -249,11 +265,17 @@ class MarchPainter:
         lights = len(frame.scene.active_lights) if self.phong else 0
         program = self.marcher.program(Variant(self.slices, phong=max(lights, 0)), material)
         bind_material(program, material, frame)
-        stack = Stack.through(View.of(frame.camera), crop_corners(frame), frame.step, frame.jitter) if self.slices else None
+        stack = (
+            Stack.through(View.of(frame.camera), crop_corners(frame), frame.step, frame.jitter)
+            if self.slices
+            else None
+        )
         set_view(program, frame, stack)
         if self.phong:
             p = frame.params
-            program.set(u_ambient=p.ambient, u_diffuse=p.diffuse, u_specular=p.specular, u_shininess=p.shininess)
+            program.set(
+                u_ambient=p.ambient, u_diffuse=p.diffuse, u_specular=p.specular, u_shininess=p.shininess
+            )
             program.set(**light_uniforms(frame, lights_towards(frame)))
         self.marcher.begin(frame)
         pieces = max(1, math.ceil((box[3] - box[1]) * (box[2] - box[0]) / PIECE_PIXELS))
@@ -270,5 +292,3 @@ class MarchPainter:
 def crop_corners(frame: Frame) -> np.ndarray:
     """Return the corners of the crop box in world space, mm; shape (8, 3)."""
     return frame.volume.corners(frame.scene.crop.low, frame.scene.crop.high)
-
-

@@ -116,6 +116,8 @@ def params_from_json(data: Any) -> TechniqueParams:
     if isinstance(data, str):
         return params_of(data)
     if not isinstance(data, dict) or data.get("id") not in techniques():
-        raise SceneError("technique", data, "an id, or an object with an id: one of " + ", ".join(techniques()))
+        raise SceneError(
+            "technique", data, "an id, or an object with an id: one of " + ", ".join(techniques())
+        )
     rest = {k: v for k, v in data.items() if k != "id"}
     return from_json(techniques()[data["id"]].params, rest, "technique")

@@ -34,7 +34,9 @@ class View:
     def of(camera: Camera) -> View:
         """Return the view of a camera."""
         basis = camera.basis()
-        return View(np.asarray(camera.position, dtype=float), np.array([basis.right, basis.up, basis.forward]))
+        return View(
+            np.asarray(camera.position, dtype=float), np.array([basis.right, basis.up, basis.forward])
+        )
 
     def coordinates(self, points: np.ndarray) -> np.ndarray:
         """Return lateral position and depth of world points in mm; shape (n, 3)."""
@@ -64,7 +66,9 @@ class Stack:
         at = view.coordinates(corners)
         near, far = float(at[:, 2].min()), float(at[:, 2].max())
         z0 = near - (1 - jitter) * step
-        return Stack(view, z0, step, max(1, math.ceil((far - z0) / step)), at[:, :2].min(axis=0), at[:, :2].max(axis=0))
+        return Stack(
+            view, z0, step, max(1, math.ceil((far - z0) / step)), at[:, :2].min(axis=0), at[:, :2].max(axis=0)
+        )
 
     def depth(self, plane: int) -> float:
         """Return a plane's depth in mm."""
@@ -107,9 +111,15 @@ class Lattice:
 
     @staticmethod
     def over(
-        stack: Stack, texel: float, mean: float, rotation: float, rear: bool, offset: tuple[float, float], reach: int
+        stack: Stack,
+        texel: float,
+        mean: float,
+        rotation: float,
+        rear: bool,
+        offset: tuple[float, float],
+        reach: int,
     ) -> Lattice:
-        """Return the lattice of a light whose kernel's centroid lies `mean` slice distances along its rotation (degrees).
+        """Return the lattice of a light whose kernel's centroid lies `mean` slice distances along its rotation (deg).
 
         ``reach`` is how many texels the footprint reaches to each side.
         """
@@ -118,7 +128,9 @@ class Lattice:
         phi, sign = math.radians(rotation), -1 if rear else 1
         per_plane = mean * stack.step / texel
         shear = tuple(sign * round(per_plane * c * SHEAR_UNIT) for c in (math.cos(phi), math.sin(phi)))
-        return Lattice(stack, texel, (int(extent[0]), int(extent[1])), (shear[0], shear[1]), rear, offset, border)
+        return Lattice(
+            stack, texel, (int(extent[0]), int(extent[1])), (shear[0], shear[1]), rear, offset, border
+        )
 
     @property
     def origin(self) -> np.ndarray:
@@ -134,7 +146,7 @@ class Lattice:
         return np.array([(plane * s) % SHEAR_UNIT for s in self.shear]) / SHEAR_UNIT
 
     def to_light(self) -> np.ndarray:
-        """Return the way along a column from a plane to the next one towards the light: lateral x, y and depth in mm."""
+        """Return the way along a column from a plane to the next towards the light: lateral x, y and depth in mm."""
         sign = 1 if self.rear else -1
         # A column moves by -shear texels per plane.
         lateral = -np.asarray(self.shear) / SHEAR_UNIT * self.texel * sign
@@ -146,7 +158,9 @@ class Lattice:
         Texels are counted as on the plane whose base is given, so that both ends of a column have one texel.
         """
         offset = self.origin + self.texel * (base - self.base(plane) - self.carried(plane))
-        return np.array([[self.texel, 0, offset[0]], [0, self.texel, offset[1]], [0, 0, self.stack.depth(plane)]])
+        return np.array(
+            [[self.texel, 0, offset[0]], [0, self.texel, offset[1]], [0, 0, self.stack.depth(plane)]]
+        )
 
 
 def clip_uniforms(scene: Scene, volume: Volume) -> dict[str, object]:

@@ -59,14 +59,23 @@ class Lamp:
 
 
 def lamps_for(
-    frame: Frame, material: Material, stack: Stack, angles: Sequence[tuple[float, float]], apertures: Sequence[float]
+    frame: Frame,
+    material: Material,
+    stack: Stack,
+    angles: Sequence[tuple[float, float]],
+    apertures: Sequence[float],
 ) -> tuple[Lamp, ...]:
     """Return lattice, stencil and tiles of each light, given by (tilt, rotation) and aperture in degrees."""
     texel = frame.volume.min_spacing / frame.params.resolution * frame.quality.light
     # The nominal step in place of one of the two: a drag with fewer slabs blurs as much as the full picture.
     area = stack.step * frame.nominal_step / texel**2
-    moments = [kernel_moments(tilt, aperture, frame.params.falloff) for (tilt, _), aperture in zip(angles, apertures, strict=True)]
-    rhythm = [1 if FORMS[frame.params.occlusion] else filter_rhythm(max(m.along, m.across) * area) for m in moments]
+    moments = [
+        kernel_moments(tilt, aperture, frame.params.falloff)
+        for (tilt, _), aperture in zip(angles, apertures, strict=True)
+    ]
+    rhythm = [
+        1 if FORMS[frame.params.occlusion] else filter_rhythm(max(m.along, m.across) * area) for m in moments
+    ]
     stencils = [
         _stencil(m.along * area * every, m.across * area * every, rotation)
         for m, every, (_, rotation) in zip(moments, rhythm, angles, strict=True)
@@ -77,7 +86,9 @@ def lamps_for(
     reach += math.ceil(max((m.mean for m in moments), default=0.0) * stack.step / texel)
     centers, half = _blocks(frame, material, stack)
     lamps = []
-    for (tilt, rotation), aperture, m, stencil, every in zip(angles, apertures, moments, stencils, rhythm, strict=True):
+    for (tilt, rotation), aperture, m, stencil, every in zip(
+        angles, apertures, moments, stencils, rhythm, strict=True
+    ):
         lattice = Lattice.over(stack, texel, m.mean, rotation, tilt > 90, frame.lattice_jitter, reach)
         tiles = list_tiles(lattice, centers, half, max(m.along, m.across) * area, near_slabs(frame))
         lamps.append(Lamp(lattice, stencil, effective_secant(tilt, aperture), tiles, every))
@@ -91,8 +102,8 @@ def near_slabs(frame: Frame) -> int:
     """
     if FORMS[frame.params.occlusion]:
         return 0
-    texel = frame.volume.min_spacing / frame.params.resolution * frame.quality.light
-    return max(1, min(MAX_NEAR, math.ceil(texel / frame.step - 1e-6)))
+    texels = frame.quality.light / (frame.params.resolution * frame.scene.step * frame.quality.step)
+    return max(1, min(MAX_NEAR, math.ceil(float(texels) - 1e-6)))
 
 
 def filter_rhythm(variance: float) -> int:
@@ -101,7 +112,7 @@ def filter_rhythm(variance: float) -> int:
     Variances add, and columns carry the light exactly in between: filtering four slabs at once saves most of
     the fetches. Our own form does so; the published forms are kept literal.
     """
-    every = 1
+    every: int = 1
     while every < MAX_RHYTHM and 2 * every * variance <= RHYTHM_VARIANCE:
         every *= 2
     return every
@@ -110,13 +121,18 @@ def filter_rhythm(variance: float) -> int:
 def _stencil(along: float, across: float, rotation: float) -> Stencil:
     """Return the stencil of a footprint whose axis along the light is turned by `rotation` degrees."""
     c, s = math.cos(math.radians(rotation)), math.sin(math.radians(rotation))
-    return stencil_for(along * c * c + across * s * s, (along - across) * c * s, along * s * s + across * c * c)
+    return stencil_for(
+        along * c * c + across * s * s, (along - across) * c * s, along * s * s + across * c * c
+    )
 
 
 def _blocks(frame: Frame, material: Material, stack: Stack) -> tuple[np.ndarray, np.ndarray]:
     """Return centres and half extents, along the view's axes in mm, of the blocks in which something is visible."""
     empty, scene = material.empty, frame.scene
-    shown = ((empty.centers + empty.half_block >= scene.crop.low) & (empty.centers - empty.half_block <= scene.crop.high)).all(axis=1)
+    shown = (
+        (empty.centers + empty.half_block >= scene.crop.low)
+        & (empty.centers - empty.half_block <= scene.crop.high)
+    ).all(axis=1)
     matrix = frame.volume.world_from_texture
     centers = stack.view.coordinates(empty.centers[shown] @ matrix[:3, :3].T + matrix[:3, 3])
     return centers, np.abs(stack.view.axes @ matrix[:3, :3]) @ empty.half_block
@@ -148,13 +164,16 @@ class Sweeper:
         self._pairs = []
         for filtering in (0, 1):
             hollow = self._program((("LITERAL", form), ("HOLLOW", 1), ("FILTER", filtering)))
-            full = self._program((("LITERAL", form), ("HOLLOW", 0), ("FILTER", filtering), *material_defines(material)))
+            full = self._program(
+                (("LITERAL", form), ("HOLLOW", 0), ("FILTER", filtering), *material_defines(material))
+            )
             bind_material(full, material, frame)
             self._pairs.append((hollow, full))
         for program in (program for pair in self._pairs for program in pair):
             program.set(
                 u_extent=tuple(map(float, size)), u_thickness=frame.step, u_path=lamp.path,
-                u_taps=np.array(lamp.stencil.taps, dtype=np.int32), u_weights=(lamp.stencil.center, *lamp.stencil.weights),
+                u_taps=np.array(lamp.stencil.taps, dtype=np.int32),
+                u_weights=(lamp.stencil.center, *lamp.stencil.weights),
                 u_tile_size=TILE, u_columns_low=lamp.tiles.low, u_inner=(border, border),
                 u_outer=(size[0] - border, size[1] - border),
             )  # fmt: skip
@@ -192,7 +211,9 @@ class Sweeper:
         source, target = self._targets
         self._targets = [target, source]
         lattice = self._lamp.lattice
-        enter, leave, before = (index + 1, index, index + 2) if lattice.rear else (index, index + 1, index - 1)
+        enter, leave, before = (
+            (index + 1, index, index + 2) if lattice.rear else (index, index + 1, index - 1)
+        )
         # Where no tile is drawn nothing stands in the light.
         target.plain.clear(self._clear, -1.0)
         full, hollow = self._lamp.tiles.of_slab(index)
@@ -209,7 +230,8 @@ class Sweeper:
             program.set(u_shift=shift, u_base=tuple(base.tolist()), u_tiles_first=first)
             if program is pair[1]:
                 program.set(
-                    u_enter=self._affine(lattice.positions(enter, base)), u_leave=self._affine(lattice.positions(leave, base))
+                    u_enter=self._affine(lattice.positions(enter, base)),
+                    u_leave=self._affine(lattice.positions(leave, base)),
                 )
             program.draw_rects(count)
 

@@ -51,7 +51,9 @@ class TileLists:
         return (int(a[0]), int(a[1])), (int(b[0]), int(b[1]))
 
 
-def list_tiles(lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, variance: float, ahead: int) -> TileLists:
+def list_tiles(
+    lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, variance: float, ahead: int
+) -> TileLists:
     """Sort the tiles of a lattice.
 
     Parameters
@@ -107,8 +109,12 @@ def _full_tiles(
         return full, (int(low[0]), int(low[1]))
     # One slab more on either side: a tile's values are first looked at before anything in it can be seen.
     before, behind = (1, 1 + ahead) if lattice.rear else (1 + ahead, 1)
-    first = np.clip(np.floor((centers[:, 2] - half[2] - stack.z0) / stack.step).astype(int) - before, 0, stack.count - 1)
-    last = np.clip(np.floor((centers[:, 2] + half[2] - stack.z0) / stack.step).astype(int) + behind, 0, stack.count - 1)
+    first = np.clip(
+        np.floor((centers[:, 2] - half[2] - stack.z0) / stack.step).astype(int) - before, 0, stack.count - 1
+    )
+    last = np.clip(
+        np.floor((centers[:, 2] + half[2] - stack.z0) / stack.step).astype(int) + behind, 0, stack.count - 1
+    )
     across = (centers[:, :2] - lattice.origin) / lattice.texel - low
     reach = half[:2] / lattice.texel + 2
     for step in range(int((last // GROUP - first // GROUP).max()) + 1):

@@ -17,14 +17,21 @@ class HalfAngleParams(TechniqueParams):
         bool,
         Param(
             "Blur the light buffer by the lamp's aperture as it is carried on (off: hard shadows)",
-            label="Soft", source="Kniss2003, section 3.3", tab="light",
+            label="Soft",
+            source="Kniss2003, section 3.3",
+            tab="light",
         ),
     ] = True
     resolution: Annotated[
         float,
         Param(
             "Texels of the light buffer per voxel",
-            label="Shadow resolution", unit="texel/voxel", ge=0.1, le=4, soft=(0.25, 2),
-            tab="light", level="more",
+            label="Shadow resolution",
+            unit="texel/voxel",
+            ge=0.1,
+            le=4,
+            soft=(0.25, 2),
+            tab="light",
+            level="more",
         ),
     ] = 1.0

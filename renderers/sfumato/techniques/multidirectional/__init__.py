@@ -19,11 +19,20 @@ from .params import DirectionalParams, MultidirectionalParams
 
 TECHNIQUES = (
     Technique(
-        "multidirectional", "Multidirectional occlusion", "Soft shadows from a lamp anywhere before or behind the subject",
-        MultidirectionalParams, "..techniques.multidirectional.passes:OcclusionPainter", source="Soltesova2010",
+        "multidirectional",
+        "Multidirectional occlusion",
+        "Soft shadows from a lamp anywhere before or behind the subject",
+        MultidirectionalParams,
+        "..techniques.multidirectional.passes:OcclusionPainter",
+        source="Soltesova2010",
     ),
     Technique(
-        "directional", "Directional occlusion (headlamp)", "Soft shadows from a headlamp: creases darken, nothing is thrown aside",
-        DirectionalParams, "..techniques.multidirectional.passes:OcclusionPainter", source="Schott2009", options={"headlamp": True},
+        "directional",
+        "Directional occlusion (headlamp)",
+        "Soft shadows from a headlamp: creases darken, nothing is thrown aside",
+        DirectionalParams,
+        "..techniques.multidirectional.passes:OcclusionPainter",
+        source="Schott2009",
+        options={"headlamp": True},
     ),
 )

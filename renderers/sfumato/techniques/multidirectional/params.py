@@ -17,23 +17,66 @@ class OcclusionParams(TechniqueParams):
         str,
         Param(
             "How opacity accumulates towards the light: ours, or one of the two published forms",
-            label="Occlusion", choices=("extinction", "additive", "multiplicative"), source="Soltesova2010, Eq. 13-14; Schott2009",
-            stale="program", tab="light", level="more",
+            label="Occlusion",
+            choices=("extinction", "additive", "multiplicative"),
+            source="Soltesova2010, Eq. 13-14; Schott2009",
+            stale="program",
+            tab="light",
+            level="more",
         ),
     ] = "extinction"
     falloff: Annotated[
         str,
-        Param("Weight across the footprint", label="Fall-off", choices=("linear", "gaussian"), source="Soltesova2010, Eq. 10-11, Fig. 7", stale="kernel", tab="light", level="more"),
+        Param(
+            "Weight across the footprint",
+            label="Fall-off",
+            choices=("linear", "gaussian"),
+            source="Soltesova2010, Eq. 10-11, Fig. 7",
+            stale="kernel",
+            tab="light",
+            level="more",
+        ),
     ] = "linear"
     specular: Annotated[
         float,
-        Param("Strength of gradient-based highlights", label="Highlights", ge=0, le=2, soft=(0, 1), source="Soltesova2010, Fig. 11", tab="light"),
+        Param(
+            "Strength of gradient-based highlights",
+            label="Highlights",
+            ge=0,
+            le=2,
+            soft=(0, 1),
+            source="Soltesova2010, Fig. 11",
+            tab="light",
+        ),
     ] = 0.0
-    shininess: Annotated[float, Param("Sharpness of highlights", label="Shininess", ge=1, le=1000, soft=(1, 200), tab="light", level="more")] = 40.0
-    ambient: Annotated[float, Param("Light that no shadow takes away", label="Ambient", ge=0, le=1, tab="light")] = 0.0
+    shininess: Annotated[
+        float,
+        Param(
+            "Sharpness of highlights",
+            label="Shininess",
+            ge=1,
+            le=1000,
+            soft=(1, 200),
+            tab="light",
+            level="more",
+        ),
+    ] = 40.0
+    ambient: Annotated[
+        float, Param("Light that no shadow takes away", label="Ambient", ge=0, le=1, tab="light")
+    ] = 0.0
     resolution: Annotated[
         float,
-        Param("Texels of the occlusion buffer per voxel", label="Shadow resolution", unit="texel/voxel", ge=0.1, le=4, soft=(0.25, 2), stale="light", tab="light", level="more"),
+        Param(
+            "Texels of the occlusion buffer per voxel",
+            label="Shadow resolution",
+            unit="texel/voxel",
+            ge=0.1,
+            le=4,
+            soft=(0.25, 2),
+            stale="light",
+            tab="light",
+            level="more",
+        ),
     ] = 1.0
 
 

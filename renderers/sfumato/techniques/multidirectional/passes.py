@@ -111,20 +111,26 @@ class OcclusionPainter:
                 kept.release()
         yield 1.0
 
-    def _plan(self, frame: Frame, material: Material, corners: np.ndarray, box: tuple[int, int, int, int]) -> Plan:
+    def _plan(
+        self, frame: Frame, material: Material, corners: np.ndarray, box: tuple[int, int, int, int]
+    ) -> Plan:
         view = View.of(frame.camera)
         stack = Stack.through(view, crop_corners(frame), frame.step, frame.jitter)
         depths = view.coordinates(corners)[:, 2]
         lights = frame.scene.active_lights
         angles = tuple((0.0, 0.0) if self.headlamp else a for a in frame.scene.light_angles())
         lamps = lamps_for(frame, material, stack, angles, [light.aperture for light in lights])
-        return Plan(material, stack, stack.slabs_of(depths.min(), depths.max()), lamps, angles, box, near_slabs(frame))
+        return Plan(
+            material, stack, stack.slabs_of(depths.min(), depths.max()), lamps, angles, box, near_slabs(frame)
+        )
 
     def _prepare(self, frame: Frame, plan: Plan) -> Program:
         """Set up the march program, the sweepers and the textures."""
         params, lamps = frame.params, plan.lamps
         literal = params.occlusion != "extinction"
-        program = self.marcher.program(Variant(True, lights=len(lamps), literal=literal, near=plan.near), plan.material)
+        program = self.marcher.program(
+            Variant(True, lights=len(lamps), literal=literal, near=plan.near), plan.material
+        )
         bind_material(program, plan.material, frame)
         set_view(program, frame, plan.stack)
         program.set(u_ambient=params.ambient, u_specular=params.specular, u_shininess=params.shininess)
@@ -135,7 +141,9 @@ class OcclusionPainter:
             self._sweepers.append(Sweeper(self.device))
         for sweeper, lamp in zip(self._sweepers, lamps, strict=False):
             sweeper.prepare(frame, plan.material, lamp)
-        towards = [np.asarray(frame.camera.basis().back)] * len(lamps) if self.headlamp else lights_towards(frame)
+        towards = (
+            [np.asarray(frame.camera.basis().back)] * len(lamps) if self.headlamp else lights_towards(frame)
+        )
         program.set(**light_uniforms(frame, towards), **_lattice_uniforms(frame, plan))
         apertures = [light.aperture for light in frame.scene.active_lights]
         cones = tuple((tilt, aperture) for (tilt, _), aperture in zip(plan.angles, apertures, strict=True))
@@ -221,7 +229,11 @@ def _layer(light: int, slab: int) -> int:
 
 def _lattice_uniforms(frame: Frame, plan: Plan) -> dict[str, Any]:
     """Return where the ray caster finds each light's visibility, and its own way towards each light."""
-    shear, origin, rear = np.zeros((4, 2), dtype=np.int32), np.zeros((4, 2), dtype=np.float32), np.zeros(4, dtype=np.int32)
+    shear, origin, rear = (
+        np.zeros((4, 2), dtype=np.int32),
+        np.zeros((4, 2), dtype=np.float32),
+        np.zeros(4, dtype=np.int32),
+    )
     along, path = np.zeros((4, 3), dtype=np.float32), np.zeros(4, dtype=np.float32)
     to_texture = frame.volume.texture_from_world[:3, :3]
     for k, lamp in enumerate(plan.lamps):

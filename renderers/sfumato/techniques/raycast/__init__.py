@@ -10,11 +10,22 @@ from .params import RaycastParams, RaycastPhongParams
 
 TECHNIQUES = (
     Technique(
-        "raycast", "Ray casting, unlit", "Each sample in its own colour: fast, flat", RaycastParams,
-        "..techniques.marcher:MarchPainter", source="Max1995", lit=False, options={"slices": False, "phong": False},
+        "raycast",
+        "Ray casting, unlit",
+        "Each sample in its own colour: fast, flat",
+        RaycastParams,
+        "..techniques.marcher:MarchPainter",
+        source="Max1995",
+        lit=False,
+        options={"slices": False, "phong": False},
     ),
     Technique(
-        "raycast-phong", "Ray casting, Phong", "Surfaces shaded by their gradient, no shadows", RaycastPhongParams,
-        "..techniques.marcher:MarchPainter", source="Levoy1988", options={"slices": False, "phong": True},
+        "raycast-phong",
+        "Ray casting, Phong",
+        "Surfaces shaded by their gradient, no shadows",
+        RaycastPhongParams,
+        "..techniques.marcher:MarchPainter",
+        source="Levoy1988",
+        options={"slices": False, "phong": True},
     ),
 )

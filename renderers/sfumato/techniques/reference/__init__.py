@@ -10,7 +10,11 @@ from .params import ReferenceParams
 
 TECHNIQUES = (
     Technique(
-        "reference", "Ray-traced reference", "The cone integral by brute force on the CPU: slow, for comparison",
-        ReferenceParams, "..techniques.reference.passes:ReferencePainter", source="sfumato",
+        "reference",
+        "Ray-traced reference",
+        "The cone integral by brute force on the CPU: slow, for comparison",
+        ReferenceParams,
+        "..techniques.reference.passes:ReferencePainter",
+        source="sfumato",
     ),
 )

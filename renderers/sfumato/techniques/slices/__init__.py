@@ -11,11 +11,22 @@ from .params import SlicesParams, SlicesPhongParams
 
 TECHNIQUES = (
     Technique(
-        "slices", "Slices, unlit", "View-aligned slices in their own colour", SlicesParams,
-        "..techniques.marcher:MarchPainter", source="Soltesova2010", lit=False, options={"slices": True, "phong": False},
+        "slices",
+        "Slices, unlit",
+        "View-aligned slices in their own colour",
+        SlicesParams,
+        "..techniques.marcher:MarchPainter",
+        source="Soltesova2010",
+        lit=False,
+        options={"slices": True, "phong": False},
     ),
     Technique(
-        "slices-phong", "Slices, Phong", "View-aligned slices shaded by their gradient", SlicesPhongParams,
-        "..techniques.marcher:MarchPainter", source="Soltesova2010", options={"slices": True, "phong": True},
+        "slices-phong",
+        "Slices, Phong",
+        "View-aligned slices shaded by their gradient",
+        SlicesPhongParams,
+        "..techniques.marcher:MarchPainter",
+        source="Soltesova2010",
+        options={"slices": True, "phong": True},
     ),
 )
