@@ -11,10 +11,10 @@ MUSCLE: RGB = (0.36, 0.095, 0.06)
 MARROW: RGB = (0.44, 0.17, 0.11)
 BLOOD: RGB = (0.55, 0.06, 0.04)
 CARTILAGE: RGB = (0.54, 0.38, 0.24)
-BONE: RGB = (0.51, 0.44, 0.315)
-DENSE_BONE: RGB = (0.56, 0.505, 0.395)
+BONE: RGB = (0.48, 0.415, 0.30)
+DENSE_BONE: RGB = (0.54, 0.485, 0.38)
 METAL: RGB = (0.55, 0.58, 0.60)
-LUNG: RGB = (0.60, 0.33, 0.29)
+LUNG: RGB = (0.40, 0.23, 0.20)
 
 Points = list[tuple[float, RGB, float]]
 
@@ -58,8 +58,8 @@ _LUNG: Points = [
 ]
 _SKIN_AND_BONE: Points = [
     (-420, SKIN, 0.0),
-    (-300, SKIN, 0.12),
-    (-150, SKIN, 0.12),
+    (-300, SKIN, 0.08),
+    (-150, SKIN, 0.08),
     (-60, SKIN, 0.006),
     (150, MUSCLE, 0.006),
     (230, MUSCLE, 0.2),

@@ -35,8 +35,8 @@ def surface(
     return TransferFunction.from_points(
         [
             (at - half, low, 0.0),
-            (at + half, low, 0.3 * opacity),
-            (inner, middle, 0.8 * opacity),
+            (at + half, low, 0.15 * opacity),
+            (inner, middle, 0.7 * opacity),
             (top, high, opacity),
         ],
         name=name,
