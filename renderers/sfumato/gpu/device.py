@@ -55,6 +55,7 @@ class Device:
         self._client_wait = self._function("glClientWaitSync", u32, ptr, u32, u64)
         self._delete_sync = self._function("glDeleteSync", None, ptr)
         self._get_error = self._function("glGetError", u32)
+        self._draw_arrays = self._function("glDrawArrays", None, u32, i32, i32)
 
     def _function(self, name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
         # moderngl has no public loader; this attribute is the one place where we rely on a private one.
@@ -78,6 +79,11 @@ class Device:
     def attach_layer(self, attachment: int, texture: Any, layer: int) -> None:
         """Attach one layer of an array or 3D texture to the bound framebuffer (moderngl cannot)."""
         self._attach_layer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + attachment, texture.glo, 0, layer)
+
+    def draw_triangles(self, array: Any, first: int, count: int) -> None:
+        """Draw a range of a vertex array without holding Python's lock: a driver may compile here, for seconds."""
+        array.render(moderngl.TRIANGLES, vertices=0)  # binds program and array
+        self._draw_arrays(moderngl.TRIANGLES, first, count)
 
     def wait(self) -> None:
         """Wait until all that was asked of the GPU is done, without holding Python's global lock.

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import moderngl
 import numpy as np
 
 from ..errors import GpuError
@@ -106,12 +105,12 @@ class Program:
     def draw(self) -> None:
         """Draw the covering triangle."""
         self._take_units()
-        self._array.render(moderngl.TRIANGLES, vertices=3)
+        self.device.draw_triangles(self._array, 0, 3)
 
     def draw_rects(self, count: int) -> None:
         """Draw rectangles, six vertices each, placed by the vertex shader (instances are slow in software)."""
         self._take_units()
-        self._array.render(moderngl.TRIANGLES, vertices=6 * count)
+        self.device.draw_triangles(self._array, 0, 6 * count)
 
     def load_mesh(self, buffer: Any, attribute: str) -> None:
         """Take triangles from a buffer of float32 (x, y, z), which the vertex shader gets as an attribute."""
@@ -122,7 +121,7 @@ class Program:
     def draw_mesh(self, first: int, count: int) -> None:
         """Draw a range of the vertices of `load_mesh` as triangles."""
         self._take_units()
-        self._mesh.render(moderngl.TRIANGLES, vertices=count, first=first)
+        self.device.draw_triangles(self._mesh, first, count)
 
     def release(self) -> None:
         """Free the GPU objects."""
