@@ -224,7 +224,7 @@ def random_scene(random: np.random.Generator, volumes: list[Volume]) -> Scene:
         [(low, (1, 1, 1), 0), (low + 80, tuple(random.uniform(0, 1, 3)), 0.7)]
     )
     tilt = float(random.choice([20, 60, 130]))
-    # One light and no clip plane: each number of them is another program, and compiling is what takes long.
+    # One light and no clip plane: each number of them is another program, and compiling takes long.
     lights = [Light(tilt=tilt, rotation=float(random.uniform(0, 360)), aperture=15)]
     crop = CropBox(low=tuple(random.uniform(0, 0.4, 3)), high=(1, 1, 1))
     volume = volumes[random.integers(len(volumes))]

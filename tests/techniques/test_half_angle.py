@@ -109,7 +109,7 @@ def test_a_lit_wall_has_its_own_colour(
 ) -> None:
     light = Light(tilt=tilt, aperture=5, intensity=0.5)
     middle = draw(wall(step=step, lights=[light], frames=4), 32)[12:20, 12:20]
-    # The light's way and the eye's through a slab differ on a wall that slants against it: the rest of the error.
+    # The light's way and the eye's through a slab differ on a wall that slants: the rest of the error.
     assert middle[..., 0].mean() == pytest.approx(0.5, rel=0.04 if step < 1 else 0.2)
     assert middle[..., 3].min() > 0.99
 
