@@ -49,6 +49,7 @@ def load(name: str = DEFAULT) -> sfumato.Volume:
         modality=item.modality,
         orientation_known=item.orientation_known,
         name=item.title,
+        transfer=sfumato.TransferFunction.from_points(item.transfer, name=item.look) if item.transfer else None,
     )
     return sfumato.Volume(cached(item), spacing=item.spacing, info=info)
 
@@ -82,8 +83,7 @@ def scene(name: str = DEFAULT) -> sfumato.Scene:
         If there is no such sample.
     """
     item, volume = entry(name), load(name)
-    transfer = sfumato.TransferFunction.from_points(item.transfer, name=item.title) if item.transfer else None
     camera = sfumato.Camera.standard(volume, item.view) if item.view else None
     if not item.lights:
-        return sfumato.Scene(volume=volume, transfer=transfer, camera=camera)
-    return sfumato.Scene(volume=volume, transfer=transfer, camera=camera, lights=item.lights)
+        return sfumato.Scene(volume=volume, camera=camera)
+    return sfumato.Scene(volume=volume, camera=camera, lights=item.lights)

@@ -45,6 +45,8 @@ class Entry:
     transfer : tuple
         Points of a suggested transfer function (value, linear rgb, opacity[, emission]); empty: the automatic
         choice.
+    look : str
+        Name of that transfer function.
     view : str
         A standard view; empty: the automatic choice.
     lights : tuple of Light
@@ -65,6 +67,7 @@ class Entry:
     orientation_known: bool = False
     dtype: str = "int16"
     transfer: Points = field(default=(), repr=False)
+    look: str = ""
     view: str = ""
     lights: tuple[Light, ...] = field(default=(), repr=False)
     vectors: bool = False
@@ -108,6 +111,7 @@ _HU: dict[str, Any] = {"unit": "HU", "modality": "CT", "orientation_known": True
 
 #: Cut-away colours, linear RGB.
 _IVORY, _SKIN, _MUSCLE = (0.90, 0.82, 0.66), (0.80, 0.50, 0.38), (0.62, 0.20, 0.15)
+_PALM, _BONE = (0.52, 0.30, 0.20), (0.48, 0.415, 0.30)
 _CLAY, _AMBER, _RED = (0.55, 0.52, 0.48), (0.95, 0.55, 0.18), (0.75, 0.12, 0.08)
 _WHITE, _BLUE, _STEEL = (0.85, 0.85, 0.85), (0.12, 0.30, 0.75), (0.55, 0.65, 0.80)
 _LEAF, _BARK = (0.16, 0.38, 0.10), (0.38, 0.22, 0.12)
@@ -127,6 +131,15 @@ ENTRIES: dict[str, Entry] = {
             (160, 120, 284),
             (0.8, 0.8, 0.8),
             **_HU,
+            look="Skin",
+            # The lit skin shows at first sight what the program is for: the thumb's shadow on the palm.
+            transfer=(
+                (-420, _PALM, 0.0),
+                (-180, _PALM, 0.9),
+                (150, _PALM, 0.95),
+                (300, _BONE, 0.95),
+                (1500, _BONE, 0.95),
+            ),
         ),
         Entry(
             "hand-splinter",

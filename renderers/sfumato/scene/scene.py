@@ -118,8 +118,9 @@ class Scene:
         from .presets import suggest_clip, suggest_transfer, suggest_view
 
         if self.transfer is None:
-            object.__setattr__(self, "transfer", suggest_transfer(volume))
-            if not self.clip:
+            supplied = volume.info.transfer
+            object.__setattr__(self, "transfer", supplied or suggest_transfer(volume))
+            if not self.clip and supplied is None:
                 object.__setattr__(self, "clip", suggest_clip(volume))
         if self.camera is None:
             object.__setattr__(self, "camera", suggest_view(volume, self.transfer))

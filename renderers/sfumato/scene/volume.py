@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import functools
 import hashlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ..errors import SceneError
+from .transfer import TransferFunction
 
 Vec3 = tuple[float, float, float]
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -31,6 +32,8 @@ class VolumeInfo:
         What the reader did to the data and the user should know, one sentence each.
     name : str
         Short name for titles and lists.
+    transfer : TransferFunction, optional
+        How its maker wants it to look at first; samples have one.
     """
 
     path: str = ""
@@ -38,6 +41,7 @@ class VolumeInfo:
     orientation_known: bool = False
     notices: tuple[str, ...] = ()
     name: str = ""
+    transfer: TransferFunction | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,14 +91,7 @@ class Volume:
         object.__setattr__(self, "origin", origin)
         object.__setattr__(self, "direction", tuple(tuple(float(c) for c in row) for row in direction))
         if notices:
-            known = self.info
-            object.__setattr__(
-                self,
-                "info",
-                VolumeInfo(
-                    known.path, known.modality, known.orientation_known, known.notices + notices, known.name
-                ),
-            )
+            object.__setattr__(self, "info", replace(self.info, notices=self.info.notices + notices))
 
     # -- identity ---------------------------------------------------------------------------------
     @functools.cached_property
