@@ -1,4 +1,4 @@
-"""``sfumato contact-sheet``: the first picture of every volume in a folder, on one sheet, with its figures."""
+"""``sfumato contact-sheet``: the first picture of every volume in a folder on one sheet, with figures."""
 
 from __future__ import annotations
 

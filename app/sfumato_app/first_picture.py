@@ -110,7 +110,8 @@ def _span(mask: np.ndarray) -> float:
     rows, columns = np.flatnonzero(kept.any(axis=1)), np.flatnonzero(kept.any(axis=0))
     if not len(rows):
         return 0.0
-    return float(max(np.ptp(rows), np.ptp(columns)) + 1) / min(mask.shape)
+    longer = max(int(np.ptp(rows)), int(np.ptp(columns))) + 1
+    return longer / float(min(mask.shape))
 
 
 def srgb(linear: np.ndarray) -> np.ndarray:

@@ -41,13 +41,13 @@ def presets_for(volume: Volume) -> tuple[Preset, ...]:
 
 
 def _modality(volume: Volume) -> str:
-    """Return the modality, or where it is not told the likeliest: what lies in a patient and is no CT is MR."""
+    """Return the modality; where it is not told, what lies in a patient and is no CT is taken for MR."""
     told = volume.info.modality.upper()
     return told or ("MR" if volume.info.orientation_known else "")
 
 
 def _by_content(presets: tuple[Preset, ...], volume: Volume, zero: float) -> tuple[Preset, ...]:
-    """Put first what there is enough of: bone, else soft tissue, else skin; of a few slices the cut tissue."""
+    """Put first what there is enough of: bone, soft tissue, skin; of a few slices the cut tissue."""
     values = thinned(volume)
     solid = max(1, int((values > zero - 200).sum()))
     bone, soft = (float((values > zero + hu).sum()) / solid for hu in (250, 0))

@@ -12,7 +12,7 @@ Palette = tuple[RGB, RGB, RGB]
 TISSUE: Palette = ((0.46, 0.27, 0.185), (0.51, 0.37, 0.275), (0.58, 0.50, 0.41))
 CLAY: Palette = ((0.42, 0.26, 0.145), (0.52, 0.41, 0.27), (0.62, 0.58, 0.50))
 AMBER: Palette = ((0.44, 0.21, 0.08), (0.52, 0.31, 0.13), (0.62, 0.47, 0.28))
-RED: Palette = ((0.52, 0.09, 0.055), (0.56, 0.13, 0.08), (0.62, 0.30, 0.21))
+RED: Palette = ((0.43, 0.075, 0.045), (0.46, 0.11, 0.07), (0.52, 0.25, 0.175))
 
 
 def surface(
@@ -66,40 +66,49 @@ def translucent(levels: Levels, palette: Palette, name: str) -> TransferFunction
     )
 
 
+def _surface_preset(
+    levels: Levels, palette: Palette, at: float, name: str, text: str, modality: str, softness: float = 0.2
+) -> Preset:
+    return Preset(name, surface(levels, palette, at, name, softness=softness), text, modality)
+
+
 def mr_presets(levels: Levels) -> tuple[Preset, ...]:
     """Return the presets for magnetic resonance."""
+    bright = (levels.inner + levels.top) / 2
+    fluid = "What is brighter than most tissue: fat, fluid or white matter, by the sequence"
     return (
-        Preset("Surface", surface(levels, TISSUE, levels.surface, "Surface"), "The outer surface of head, brain or body", "MR"),
-        Preset("Bright tissue", surface(levels, TISSUE, levels.inner, "Bright tissue"), "What is brighter than most tissue: fat, fluid or white matter, by the sequence", "MR"),
-        Preset("Vessels", surface(levels, RED, (levels.inner + levels.top) / 2, "Vessels"), "The brightest parts, as in angiography", "MR"),
+        _surface_preset(
+            levels, TISSUE, levels.surface, "Surface", "The surface of head, brain or body", "MR"
+        ),
+        _surface_preset(levels, TISSUE, levels.inner, "Bright tissue", fluid, "MR"),
+        _surface_preset(
+            levels, RED, bright, "Bright vessels", "The brightest parts, as in angiography", "MR"
+        ),
         Preset("Glass", translucent(levels, TISSUE, "Glass"), "Bright parts in a translucent hull", "MR"),
-    )  # fmt: skip
+    )
 
 
 def ultrasound_presets(levels: Levels) -> tuple[Preset, ...]:
     """Return the presets for ultrasound."""
     return (
-        Preset(
-            "Echo",
-            surface(levels, AMBER, levels.surface, "Echo", softness=0.5),
-            "Everything that echoes, with a soft surface",
-            "US",
+        _surface_preset(
+            levels, AMBER, levels.surface, "Echo", "All that echoes, with a soft surface", "US", 0.5
         ),
-        Preset(
-            "Strong echo",
-            surface(levels, AMBER, levels.inner, "Strong echo", softness=0.4),
-            "Strong echoes only",
-            "US",
-        ),
+        _surface_preset(levels, AMBER, levels.inner, "Strong echo", "Strong echoes only", "US", 0.4),
         Preset("Haze", translucent(levels, AMBER, "Haze"), "Strong echoes within a haze of weak ones", "US"),
     )
 
 
 def plain_presets(levels: Levels) -> tuple[Preset, ...]:
     """Return the presets for values of unknown meaning."""
+    solid = "The surface of all that stands out from the background"
     return (
-        Preset("Solid", surface(levels, CLAY, levels.surface, "Solid"), "The surface of all that stands out from the background", ""),
-        Preset("Solid inner parts", surface(levels, CLAY, levels.inner, "Solid inner parts"), "The surface of the brighter parts", ""),
-        Preset("Solid red", surface(levels, RED, levels.surface, "Solid red"), "The same surface in the colour of blood", ""),
-        Preset("Translucent", translucent(levels, CLAY, "Translucent"), "Bright parts in a translucent hull", ""),
-    )  # fmt: skip
+        _surface_preset(levels, CLAY, levels.surface, "Solid", solid, ""),
+        _surface_preset(
+            levels, CLAY, levels.inner, "Solid inner parts", "The surface of the brighter parts", ""
+        ),
+        _surface_preset(levels, RED, levels.surface, "Solid red", solid + ", in the colour of blood", ""),
+        Preset(
+            "Translucent", translucent(levels, CLAY, "Translucent"), "Bright parts in a translucent hull", ""
+        ),
+    )

@@ -66,7 +66,7 @@ def suggest_clip(volume: Volume) -> tuple[ClipPlane, ...]:
 
 
 def face_side(volume: Volume) -> int:
-    """Return on which side of the array's y axis the patient's front lies, judged by the table: -1, 1, or 0 (unknown)."""
+    """Return towards which end of the array's y axis the patient faces, by the table: -1, 1, or 0 (unknown)."""
     scan = _scan(volume)
     if scan is None or len(scan.other) < 20:
         return 0

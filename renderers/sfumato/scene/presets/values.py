@@ -132,7 +132,7 @@ def levels(volume: Volume) -> Levels:
 
 
 def otsu(values: np.ndarray, top: float) -> float:
-    """Return the threshold between two classes of values that leaves the least variance within them (Otsu1979)."""
+    """Return the threshold between two classes of values with the least variance within them (Otsu1979)."""
     counts, edges = np.histogram(np.minimum(values, top), bins=_BINS)
     centers = (edges[1:] + edges[:-1]) / 2
     below, total = np.cumsum(counts), counts.sum()
