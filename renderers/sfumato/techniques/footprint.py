@@ -98,9 +98,10 @@ def _selling(xx: float, xy: float, yy: float) -> Stencil:
     tiny = 1e-9 * max(xx, yy, 1e-12)
     matrix = np.array([[xx + tiny, xy], [xy, yy + tiny]])
     base = [np.array([1, 0]), np.array([0, 1]), np.array([-1, -1])]
-    for _ in range(200):  # to an obtuse superbase: every pair's product is <= 0
+    # To an obtuse superbase: every pair's product is <= 0. A thin ellipse takes as many steps as it is long.
+    for _ in range(40_000):
         for i, j in ((0, 1), (1, 2), (0, 2)):
-            if base[i] @ matrix @ base[j] > 1e-15:
+            if base[i] @ matrix @ base[j] > 1e-12 * max(xx, yy):
                 base = [-base[i], base[j], base[i] - base[j]]
                 break
         else:
