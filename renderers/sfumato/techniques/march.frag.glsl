@@ -1,19 +1,17 @@
 // The one ray caster: marches the segments first..last-1 of every view ray, front to back, over what earlier passes left.
 //
 // SLICES     samples lie on planes that face the viewer; otherwise at equal distances along each ray
-// LIGHTS     lights that are looked up in swept layers; 0: none
+// SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows
+// LIGHTS     number of lights
 // LITERAL    1: the published occlusion forms, which light a sample by its opacity, not by the slab term
-// PHONG      lights that shade by the gradient, without shadows
 // EMISSION   tissue gives off light
 #include "ray"
 #include "volume"
 #include "clip"
 #include "transfer"
 #include "skip"
-#if PHONG > 0
-uniform vec3 u_light_color[4];
-uniform vec3 u_towards[4];
-#endif
+uniform vec3 u_light_color[4];       // linear RGB times intensity
+uniform vec3 u_towards[4];           // unit vector to the light, world
 
 uniform sampler2D u_previous;    // colour and opacity so far
 uniform bool u_start;            // there is nothing so far
@@ -25,7 +23,7 @@ uniform float u_far;             // mm
 uniform float u_ambient, u_diffuse, u_specular, u_shininess;
 uniform float u_edge;            // gradient (normalised value per mm) at which a highlight has half its strength
 
-#if LIGHTS > 0
+#if SHADING == 1
 #include "occlusion"
 #endif
 
@@ -34,14 +32,14 @@ layout(location = 0) out vec4 o_color;
 // What a ray can still let through before it counts as opaque.
 const float OPAQUE = 0.999;
 
-#if PHONG > 0
+#if SHADING == 2
 // Blinn-Phong; the normal is turned to the viewer, since a gradient has no outside.
 vec3 phong(vec3 gradient, vec3 view, vec3 color, float alpha) {
     float strength = length(gradient);
     vec3 normal = strength > 0.0 ? gradient / strength : view;
     if (dot(normal, view) < 0.0) normal = -normal;
     vec3 result = color * u_ambient;
-    for (int l = 0; l < PHONG; ++l) {
+    for (int l = 0; l < LIGHTS; ++l) {
         float facing = max(dot(normal, u_towards[l]), 0.0);
         float shine = facing > 0.0 ? pow(max(dot(normal, normalize(u_towards[l] + view)), 0.0), u_shininess) : 0.0;
         result += u_light_color[l] * (color * (u_diffuse * facing) + alpha * u_specular * shine * strength / (strength + u_edge));
@@ -50,7 +48,7 @@ vec3 phong(vec3 gradient, vec3 view, vec3 color, float alpha) {
 }
 #endif
 
-#if LIGHTS > 0
+#if SHADING == 1
 // Where a view ray meets a plane of the stack, and the value there.
 struct Meeting { vec2 lateral; vec3 t; float value; };
 
@@ -135,12 +133,12 @@ void main() {
         float depth = mean.a * (z_next - z);        // optical depth along the axis
         float alpha = 1.0 - exp(-depth * secant);
         vec3 color = mean.rgb / mean.a;
-#if LIGHTS > 0
+#if SHADING == 1
         float z_front = z0 + float(i) * dz, z_back = z_front + dz;
         Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, value);
         Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, value_next);
         vec3 c = lit(i, front, back, color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
-#elif PHONG > 0
+#elif SHADING == 2
         vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
 #else
         vec3 c = alpha * color;

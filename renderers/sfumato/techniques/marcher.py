@@ -89,15 +89,19 @@ def visible_corners(frame: Frame, material: Material) -> np.ndarray | None:
     return frame.volume.corners(tuple(low), tuple(high)) if (low < high).all() else None
 
 
+#: How the march shader shades a sample.
+UNLIT, SWEPT, PHONG = 0, 1, 2
+
+
 @dataclass(frozen=True)
 class Variant:
     """What the march shader is compiled for."""
 
     slices: bool = False
+    shading: int = UNLIT
     lights: int = 0
     literal: bool = False
     near: int = 0
-    phong: int = 0
 
 
 class Marcher:
@@ -112,7 +116,7 @@ class Marcher:
         """Return the program of a variant, compiling it when first asked for."""
         defines = (
             ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
-            ("NEAR", variant.near), ("PHONG", variant.phong), ("EMISSION", int(material.tables.emits)),
+            ("NEAR", variant.near), ("SHADING", variant.shading), ("EMISSION", int(material.tables.emits)),
             *material_defines(material),
         )  # fmt: skip
         if defines not in self._programs:
@@ -263,7 +267,8 @@ class MarchPainter:
             yield 1.0
             return
         lights = len(frame.scene.active_lights) if self.phong else 0
-        program = self.marcher.program(Variant(self.slices, phong=max(lights, 0)), material)
+        shading = PHONG if self.phong else UNLIT
+        program = self.marcher.program(Variant(self.slices, shading, lights), material)
         bind_material(program, material, frame)
         stack = (
             Stack.through(View.of(frame.camera), crop_corners(frame), frame.step, frame.jitter)

@@ -11,8 +11,6 @@ uniform ivec2 u_shear[4];            // columns' shift per plane, 1/32768 texel,
 uniform vec2 u_lattice_origin[4];    // lateral position (mm) of texel coordinate 0 at plane 0
 uniform float u_texel;               // mm
 uniform vec2 u_lattice_size;         // texels
-uniform vec3 u_light_color[4];       // linear RGB times intensity
-uniform vec3 u_towards[4];           // unit vector to the light, world
 uniform int u_rear[4];               // 1: behind the subject, its light enters at the slab's back
 uniform sampler2D u_slab_term;       // the light that a slab returns, one light a channel (methods.md, 3a)
 uniform float u_slab_secant_max;     // secant at the table's upper edge

@@ -19,6 +19,7 @@ from ...gpu import Device, Program
 from ..footprint import slab_table
 from ..frame import Frame
 from ..marcher import (
+    SWEPT,
     Marcher,
     Material,
     Variant,
@@ -129,7 +130,7 @@ class OcclusionPainter:
         params, lamps = frame.params, plan.lamps
         literal = params.occlusion != "extinction"
         program = self.marcher.program(
-            Variant(True, lights=len(lamps), literal=literal, near=plan.near), plan.material
+            Variant(True, SWEPT, len(lamps), literal, plan.near), plan.material
         )
         bind_material(program, plan.material, frame)
         set_view(program, frame, plan.stack)
