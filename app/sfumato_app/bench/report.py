@@ -92,6 +92,8 @@ class Report:
         return lines
 
     def _ratios(self) -> list[str]:
+        if not self.outcomes:
+            return ["no ratios: they need more of the rows"]
         lines = [f"{'':47}{'CPU':>22}{'wall':>22}  {'goal':14}"]
         for outcome in self.outcomes:
             goal = str(outcome.ratio.goal or "")
