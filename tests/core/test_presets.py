@@ -210,3 +210,12 @@ def test_a_turned_array_shows_the_same_picture_where_the_orientation_is_known() 
 def test_a_few_slices_show_the_cut_tissue() -> None:
     assert presets_for(ct(patient()[:14]))[0].name == "Muscle"
     assert looking(ct(patient()[:14])) == ([0, 0, 1], [0, -1, 0])
+
+
+def test_thin_parts_of_the_subject_are_no_table() -> None:
+    hand = np.full((80, 60, 60), -1000, np.int16)
+    hand[:40, 26:34, 15:45] = 40
+    for x in (16, 24, 32, 40):
+        hand[40:75, 28:32, x : x + 4] = 40
+    volume = Volume(hand, (2.0, 2.0, 2.0), info=VolumeInfo(modality="CT", orientation_known=True))
+    assert suggest_clip(volume) == ()

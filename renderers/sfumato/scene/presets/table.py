@@ -20,8 +20,8 @@ CELLS = 72
 SOLID = -350.0
 #: Sheets and rods thinner than about twice this, in mm, are no body.
 THICKNESS = 9.0
-#: How far, in mm, the body reaches beyond what survives that opening: ears and noses.
-REACH = 22.0
+#: Limbs are at least this share as thick as the rest.
+SLENDER = 0.3
 #: Planes keep this far, in mm, from the body.
 MARGIN = 3.0
 #: Not more planes than these: the user wants some too.
@@ -40,8 +40,7 @@ def suggest_clip(volume: Volume) -> tuple[ClipPlane, ...]:
     """Return the planes that cut table and head rest away from a CT and leave the patient whole.
 
     Each plane stands parallel to the array's z axis and keeps its distance from the patient; what lies
-    within the patient's outline cannot be cut, nor is a table found that touches the patient along its
-    whole length.
+    within the patient's outline cannot be cut, and what touches the patient counts as patient.
     """
     scan = _scan(volume)
     if scan is None:
@@ -92,16 +91,16 @@ def _scan(volume: Volume) -> Scan | None:
 
 
 def _body(solid: np.ndarray, cell: np.ndarray) -> np.ndarray:
-    """Return the solid voxels near what is thicker than a table's shell."""
+    """Return the pieces of the solid that are somewhere thicker than a table's shell."""
     # Slice by slice, since a slab of few slices has no thickness along z.
-    core = np.stack(
-        [
-            ndimage.distance_transform_edt(ndimage.binary_fill_holes(s), sampling=cell[1:].tolist())
-            > THICKNESS
-            for s in solid
-        ]
+    sampling = cell[1:].tolist()
+    depth = np.stack(
+        [ndimage.distance_transform_edt(ndimage.binary_fill_holes(s), sampling=sampling) for s in solid]
     )
-    return np.asarray(_grown(_large(core, cell, 0.02), cell, REACH) & solid)
+    # A hand's fingers are thinner than a table: what is thin depends on the patient, too.
+    core = _large(solid & (depth > min(THICKNESS, SLENDER * float(depth.max()))), cell, 0.005)
+    pieces, _ = ndimage.label(solid)
+    return np.asarray(np.isin(pieces, np.unique(pieces[core])) & solid)
 
 
 def _grown(mask: np.ndarray, cell: np.ndarray, reach: float) -> np.ndarray:
