@@ -22,6 +22,8 @@ SOLID = -350.0
 THICKNESS = 9.0
 #: Limbs are at least this share as thick as the rest.
 SLENDER = 0.3
+#: What hangs together with the patient is patient this far, in mm, from what is that thick.
+REACH = 40.0
 #: Planes keep this far, in mm, from the body.
 MARGIN = 3.0
 #: Not more planes than these: the user wants some too.
@@ -82,25 +84,28 @@ def _scan(volume: Volume) -> Scan | None:
         return None
     solid = thinned(volume, CELLS) > zero + SOLID
     cell = np.array(volume.spacing[::-1]) * np.array(volume.data.shape) / np.array(solid.shape)
-    body = _body(solid, cell)
-    other = solid & ~_grown(body, cell, 2 * MARGIN)
-    other = _large(other, cell)
+    core = _core(solid, cell)
+    pieces, _ = ndimage.label(solid)
+    patient = np.isin(pieces, np.unique(pieces[core])) & solid
+    away = ~_grown(patient, cell, MARGIN)
+    # A sheet's edge reaches on to the next cell that was not looked at.
+    other = ndimage.binary_dilation(_large(solid & away, cell), np.ones((1, 3, 3))) & away
+    # A cable may join a head rest to the patient: that far away, it does not keep the planes off.
+    body = patient & _grown(core, cell, REACH)
     if not other.any() or not body.any():
         return None
     return Scan(_world(volume, body & ~ndimage.binary_erosion(body)), _world(volume, other))
 
 
-def _body(solid: np.ndarray, cell: np.ndarray) -> np.ndarray:
-    """Return the pieces of the solid that are somewhere thicker than a table's shell."""
+def _core(solid: np.ndarray, cell: np.ndarray) -> np.ndarray:
+    """Return the inside of what is thicker than a table's shell."""
     # Slice by slice, since a slab of few slices has no thickness along z.
     sampling = cell[1:].tolist()
     depth = np.stack(
         [ndimage.distance_transform_edt(ndimage.binary_fill_holes(s), sampling=sampling) for s in solid]
     )
     # A hand's fingers are thinner than a table: what is thin depends on the patient, too.
-    core = _large(solid & (depth > min(THICKNESS, SLENDER * float(depth.max()))), cell, 0.005)
-    pieces, _ = ndimage.label(solid)
-    return np.asarray(np.isin(pieces, np.unique(pieces[core])) & solid)
+    return _large(solid & (depth > min(THICKNESS, SLENDER * float(depth.max()))), cell, 0.005)
 
 
 def _grown(mask: np.ndarray, cell: np.ndarray, reach: float) -> np.ndarray:
