@@ -29,7 +29,7 @@ def ellipsoid(shape: tuple[int, int, int], center: tuple[float, ...], radii: tup
 def patient(zero: int = 0, table: bool = True, front: int = -1) -> np.ndarray:
     """A trunk of soft tissue with a spine, on a thin curved table behind it; 4 mm voxels; HU + zero."""
     shape = (40, 100, 163)
-    z, y, x = np.meshgrid(*(np.arange(n) for n in shape), indexing="ij")
+    _, y, x = np.meshgrid(*(np.arange(n) for n in shape), indexing="ij")
     data = np.full(shape, -1000, dtype=np.int16)
     data[ellipsoid(shape, (20, 45, 80), (60, 25, 40)) < 1] = 40
     data[(x - 80) ** 2 + (y - 60) ** 2 < 25] = 700
