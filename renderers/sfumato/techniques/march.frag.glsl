@@ -4,6 +4,7 @@
 // SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows
 // LIGHTS     number of lights
 // LITERAL    1: the published occlusion forms, which light a sample by its opacity, not by the slab term
+// SPECULAR   the swept lights have gradient-based highlights
 // EMISSION   tissue gives off light
 #include "ray"
 #include "volume"
@@ -31,6 +32,11 @@ layout(location = 0) out vec4 o_color;
 
 // What a ray can still let through before it counts as opaque.
 const float OPAQUE = 0.999;
+// Whether shading costs so much more than looking that it pays to wait until all neighbours have something to shade.
+const bool LOOK_ON = SHADING > 0;
+
+// The last plane at or before a depth, but not beyond the ray's end.
+int plane_before(float z, float z0, float dz, float end) { return int(floor((min(z, end + dz) - z0) / dz)); }
 
 #if SHADING == 2
 // Blinn-Phong; the normal is turned to the viewer, since a gradient has no outside.
@@ -60,22 +66,22 @@ vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float dept
 #else
     vec4 returned = slab_term(depth, secant);
 #endif
-    vec3 gradient = vec3(0.0);
-    float strength = 0.0;
-    if (u_specular > 0.0) {
-        gradient = volume_gradient(t);
-        strength = length(gradient);
-        if (dot(gradient, view) < 0.0) gradient = -gradient;
-    }
+#if SPECULAR
+    vec3 gradient = volume_gradient(t);
+    float strength = length(gradient);
+    if (dot(gradient, view) < 0.0) gradient = -gradient;
+#endif
     for (int l = 0; l < LIGHTS; ++l) {
         bool rear = u_rear[l] == 1;
         float visible = visibility(l, i, rear ? back.lateral : front.lateral, rear ? back.t : front.t, rear ? back.value : front.value);
         vec3 arrives = u_light_color[l] * visible;
         result += arrives * color * returned[l];
+#if SPECULAR
         if (strength > 0.0 && dot(gradient, u_towards[l]) > 0.0) {
             float shine = pow(max(dot(gradient / strength, normalize(u_towards[l] + view)), 0.0), u_shininess);
             result += arrives * (alpha * u_specular * shine * strength / (strength + u_edge));
         }
+#endif
     }
     return result;
 }
@@ -103,53 +109,60 @@ void main() {
     float value = volume_value(a + b * z);
     vec3 view = -ray.direction / secant;
 
-    // Two loops, so that software renderers, which run both sides of a branch, do not shade what is empty.
-    while (sum.a < OPAQUE) {
-        // 1. On to the next segment in which something is visible.
-        float z_next = z, value_next = value, magnitude = 0.0;
-        vec4 mean = vec4(0.0);
-        for (; i < u_last && z < range.y; ++i) {
-            z_next = min(z0 + float(i + 1) * dz, range.y);
-            value_next = volume_value(a + b * z_next);
-#ifdef TRANSFER_2D
-            magnitude = length(volume_gradient(a + b * (0.5 * (z + z_next))));
-#endif
-            mean = classify(value, value_next, magnitude);
-            if (mean.a > 0.0 && z_next > z) break;
-            mean = vec4(0.0);
-            // Nothing here: look how far nothing goes on, and land on the last plane before its end.
-            int next = int(floor((min(z + empty_run(a, b, z), range.y + dz) - z0) / dz));
-            if (next > i + 1) {
-                i = next - 1;
-                z_next = z0 + float(next) * dz;
-                value_next = volume_value(a + b * z_next);
-            }
-            z = z_next;
-            value = value_next;
+    // Loops where branches would do: software renderers run both sides of a branch, but leave a loop when all have.
+    bool known = true;           // whether `value` is the volume's at z
+    while (sum.a < OPAQUE && i < u_last && z < range.y) {
+        // 1. Over what is empty, to the last plane before its end.
+        int next = plane_before(z + empty_run(a, b, z), z0, dz, range.y);
+        while (next > i && i < u_last && z < range.y) {
+            i = next;
+            z = z0 + float(i) * dz;
+            known = false;
+            next = plane_before(z + empty_run(a, b, z), z0, dz, range.y);
         }
-        if (mean.a <= 0.0) break;
+        if (!known) value = volume_value(a + b * z);
+        known = true;
+        // 2. Through the block, one segment at least.
+        float leave = min(z + max(block_run(a, b, z), 1e-3 * dz), range.y);
+        while (sum.a < OPAQUE && i < u_last && z < leave) {
+            float z_next = z, value_next = value, magnitude = 0.0;
+            vec4 mean = vec4(0.0);
+            // 3. On to the next segment in which something is visible.
+            for (; i < u_last && z < leave; ++i) {
+                z_next = min(z0 + float(i + 1) * dz, range.y);
+                value_next = volume_value(a + b * z_next);
+#ifdef TRANSFER_2D
+                magnitude = length(volume_gradient(a + b * (0.5 * (z + z_next))));
+#endif
+                mean = classify(value, value_next, magnitude);
+                if (!LOOK_ON || mean.a > 0.0) break;
+                z = z_next;
+                value = value_next;
+            }
+            if (LOOK_ON && mean.a <= 0.0) break;
 
-        // 2. Shade it.
-        float depth = mean.a * (z_next - z);        // optical depth along the axis
-        float alpha = 1.0 - exp(-depth * secant);
-        vec3 color = mean.rgb / mean.a;
+            // 4. Shade it.
+            float depth = mean.a * max(z_next - z, 0.0);        // optical depth along the axis
+            float alpha = 1.0 - exp(-depth * secant);
+            vec3 color = mean.rgb / max(mean.a, 1e-20);
 #if SHADING == 1
-        float z_front = z0 + float(i) * dz, z_back = z_front + dz;
-        Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, value);
-        Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, value_next);
-        vec3 c = lit(i, front, back, color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
+            float z_front = z0 + float(i) * dz, z_back = z_front + dz;
+            Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, value);
+            Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, value_next);
+            vec3 c = lit(i, front, back, color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
 #elif SHADING == 2
-        vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
+            vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
 #else
-        vec3 c = alpha * color;
+            vec3 c = alpha * color;
 #endif
 #if EMISSION
-        c += alpha * classify_emission(value, value_next, magnitude) / mean.a;
+            c += alpha * classify_emission(value, value_next, magnitude) / max(mean.a, 1e-20);
 #endif
-        sum += (1.0 - sum.a) * vec4(c, alpha);
-        z = z_next;
-        value = value_next;
-        ++i;
+            sum += (1.0 - sum.a) * vec4(c, alpha);
+            z = z_next;
+            value = value_next;
+            ++i;
+        }
     }
     if (sum.a >= OPAQUE) sum /= sum.a;
     o_color = sum;

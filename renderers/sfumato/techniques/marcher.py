@@ -102,6 +102,7 @@ class Variant:
     lights: int = 0
     literal: bool = False
     near: int = 0
+    specular: bool = False
 
 
 class Marcher:
@@ -116,7 +117,8 @@ class Marcher:
         """Return the program of a variant, compiling it when first asked for."""
         defines = (
             ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
-            ("NEAR", variant.near), ("SHADING", variant.shading), ("EMISSION", int(material.tables.emits)),
+            ("NEAR", variant.near), ("SHADING", variant.shading), ("SPECULAR", int(variant.specular)),
+            ("EMISSION", int(material.tables.emits)),
             *material_defines(material),
         )  # fmt: skip
         if defines not in self._programs:

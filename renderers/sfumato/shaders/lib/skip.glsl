@@ -14,3 +14,11 @@ float empty_run(vec3 a, vec3 b, float s) {
     vec3 run = room / max(abs(slope), vec3(1e-20));
     return min(run.x, min(run.y, run.z));
 }
+
+// How far a line a + b * s can go from s before it leaves its block.
+float block_run(vec3 a, vec3 b, float s) {
+    vec3 q = (a + b * s) * u_blocks, slope = b * u_blocks;
+    vec3 inside = q - floor(q);
+    vec3 run = mix(inside, 1.0 - inside, greaterThan(slope, vec3(0.0))) / max(abs(slope), vec3(1e-20));
+    return min(run.x, min(run.y, run.z));
+}

@@ -130,7 +130,7 @@ class OcclusionPainter:
         params, lamps = frame.params, plan.lamps
         literal = params.occlusion != "extinction"
         program = self.marcher.program(
-            Variant(True, SWEPT, len(lamps), literal, plan.near), plan.material
+            Variant(True, SWEPT, len(lamps), literal, plan.near, params.specular > 0), plan.material
         )
         bind_material(program, plan.material, frame)
         set_view(program, frame, plan.stack)
