@@ -80,10 +80,12 @@ def lamps_for(
         _stencil(m.along * area * every, m.across * area * every, rotation)
         for m, every, (_, rotation) in zip(moments, rhythm, angles, strict=True)
     ]
-    # All lights share one size of grid, so that their layers can lie in one texture.
-    reach = max((abs(c) for stencil in stencils for tap in stencil.taps for c in tap), default=0)
+    # All lights share one size of grid, so that their layers can lie in one texture. Grazing light may reach
+    # farther than the volume is wide: beyond that there is nothing, however far.
+    widest = math.ceil(float((stack.high - stack.low).max()) / texel) + 1
+    reach = min(widest, max((abs(c) for stencil in stencils for tap in stencil.taps for c in tap), default=0))
     # A slab's columns also begin texels away from those of the slab before: steep lights move by several.
-    reach += math.ceil(max((m.mean for m in moments), default=0.0) * stack.step / texel)
+    reach += min(widest, math.ceil(max((m.mean for m in moments), default=0.0) * stack.step / texel))
     centers, half = _blocks(frame, material, stack)
     lamps = []
     for (tilt, rotation), aperture, m, stencil, every in zip(
@@ -161,6 +163,8 @@ class Sweeper:
         self._to_texture = _texture_from_view(frame, lamp.lattice.stack)
         self._upload_tiles(lamp.tiles)
         border = lamp.lattice.border - PAD
+        taps = np.clip(np.array(lamp.stencil.taps, dtype=np.int32), -border, border)
+        self._farthest = border - int(np.abs(taps).max())
         self._pairs = []
         for filtering in (0, 1):
             hollow = self._program((("LITERAL", form), ("HOLLOW", 1), ("FILTER", filtering)))
@@ -172,7 +176,7 @@ class Sweeper:
         for program in (program for pair in self._pairs for program in pair):
             program.set(
                 u_extent=tuple(map(float, size)), u_thickness=frame.step, u_path=lamp.path,
-                u_taps=np.array(lamp.stencil.taps, dtype=np.int32),
+                u_taps=taps,
                 u_weights=(lamp.stencil.center, *lamp.stencil.weights),
                 u_tile_size=TILE, u_columns_low=lamp.tiles.low, u_inner=(border, border),
                 u_outer=(size[0] - border, size[1] - border),
@@ -221,7 +225,8 @@ class Sweeper:
             return
         target.use(layers, layer)
         base = lattice.base(enter)
-        shift = tuple((base - lattice.base(before)).tolist())
+        # What lies farther away than the border is clear in any case.
+        shift = tuple(np.clip(base - lattice.base(before), -self._farthest, self._farthest).tolist())
         pair = self._pairs[int(index % self._lamp.every == 0)]
         for program, (first, count) in zip(pair, (hollow, full), strict=True):
             if count == 0:
