@@ -1,0 +1,85 @@
+"""What a figure is: panels side by side, each a scene or a cut through a volume."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sfumato import Scene, Volume
+
+#: Jittered frames of a finished panel.
+FRAMES = 8
+#: Linear colour behind the subjects: a cool grey, darker than ivory in the light, lighter than any shadow.
+PAPER = (0.47, 0.49, 0.51, 1.0)
+
+
+@dataclass(frozen=True)
+class Cuts:
+    """Grey cuts through a volume, as a scanner's own screen shows them.
+
+    Parameters
+    ----------
+    volume : Volume
+        What is cut; across its three array axes.
+    at : (x, y, z)
+        Where, in fractions of the array's sides.
+    window : (low, high)
+        Values shown as black and as white.
+    """
+
+    volume: Volume
+    at: tuple[float, float, float]
+    window: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One picture of a figure.
+
+    Parameters
+    ----------
+    label : str
+        The letter below it.
+    picture : Scene or Cuts
+        What it shows.
+    note : str
+        How it was made, a few words.
+    """
+
+    label: str
+    picture: Scene | Cuts
+    note: str
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure of Soltesova2010, made again.
+
+    Parameters
+    ----------
+    number : int
+        Its number in the paper.
+    title : str
+        A few words.
+    caption : str
+        What is compared, and what to look for.
+    panels : tuple of Panel
+        From left to right.
+    size : (width, height)
+        Of a finished panel in pixels.
+    """
+
+    number: int
+    title: str
+    caption: str
+    panels: tuple[Panel, ...]
+    size: tuple[int, int] = (480, 480)
+
+    @property
+    def file_name(self) -> str:
+        """Name of the picture file."""
+        return f"fig{self.number:02d}.png"
+
+
+def panels(*parts: tuple[Scene | Cuts, str]) -> tuple[Panel, ...]:
+    """Letter pictures with notes from (a)."""
+    return tuple(Panel(chr(ord("a") + k), picture, note) for k, (picture, note) in enumerate(parts))
