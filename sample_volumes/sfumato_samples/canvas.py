@@ -9,7 +9,7 @@ import numpy as np
 
 from . import sdf
 from .grid import Axes, Grid, Point
-from .noise import grain
+from .noise import blurred, grain
 
 Body = Callable[[Axes], np.ndarray]
 
@@ -102,7 +102,9 @@ class Canvas:
         self.values[whole] += sdf.inside(distance, self.edge) * (np.float32(value) - self.values[whole])
 
     def finished(self, dtype: type, noise: float = 0.0, seed: int = 0) -> np.ndarray:
-        """Return the values with white noise of a deviation, rounded to an integer type."""
+        """Return the values with white noise of a deviation, rounded to an integer type; CT is blurred a little."""
+        if dtype is np.int16:
+            self.values = blurred(self.values)
         values = self.values + grain(self.values.shape, seed) * np.float32(noise) if noise else self.values
         limits = (-1024, 3071) if dtype is np.int16 else (0, 255)
         return np.asarray(np.rint(np.clip(values, *limits)).astype(dtype))

@@ -10,7 +10,7 @@ import numpy as np
 from . import sdf
 from .canvas import Canvas
 from .grid import Grid
-from .noise import grain, smooth_noise
+from .noise import blurred, grain, smooth_noise
 
 GRID = Grid(low=(-60.0, -8.0, -104.0), dims=(120, 76, 112), spacing=1.0)
 #: Echo strength of blood, muscle and of what surrounds the heart.
@@ -60,17 +60,10 @@ def _speckle(shape: tuple[int, int, int]) -> np.ndarray:
         noise = grain(shape, SEED + k)
         for axis, rounds in ((2, 2), (1, 2), (0, 1)):
             for _ in range(rounds):
-                noise = _smoothed(noise, axis)
+                noise = blurred(noise, (axis,))
         parts.append(noise)
     # The smoothing leaves a deviation of 0.1674; a Rayleigh variable's mean is 1.2533 deviations.
     return sdf.length(*parts) * np.float32(1 / (0.1674 * 1.2533))
-
-
-def _smoothed(values: np.ndarray, axis: int) -> np.ndarray:
-    result = values * np.float32(0.5)
-    result += np.roll(values, 1, axis) * np.float32(0.25)
-    result += np.roll(values, -1, axis) * np.float32(0.25)
-    return result
 
 
 def _sector() -> np.ndarray:

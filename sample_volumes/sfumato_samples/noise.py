@@ -1,4 +1,4 @@
-"""Seeded noise, the same on every machine."""
+"""A scanner's faults, the same on every machine: seeded noise, and the blur of its focus."""
 
 from __future__ import annotations
 
@@ -39,3 +39,19 @@ def _doubled(field: np.ndarray, axis: int) -> np.ndarray:
     result[even] = field
     result[odd] = (field[low] + field[high]) * np.float32(0.5)
     return result
+
+
+def blurred(values: np.ndarray, axes: tuple[int, ...] = (0, 1, 2)) -> np.ndarray:
+    """Return float32 values averaged with their neighbours (1 : 2 : 1) along each axis: a deviation of 0.7 voxels.
+
+    About what a scanner's focus does; without it, edges are sharper than voxels can tell, and show their steps.
+    """
+    for axis in axes:
+        result = values * np.float32(0.5)
+        old, new = np.moveaxis(values, axis, 0), np.moveaxis(result, axis, 0)
+        new[1:] += old[:-1] * np.float32(0.25)
+        new[:1] += old[:1] * np.float32(0.25)
+        new[:-1] += old[1:] * np.float32(0.25)
+        new[-1:] += old[-1:] * np.float32(0.25)
+        values = result
+    return values

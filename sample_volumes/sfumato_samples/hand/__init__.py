@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..grid import Grid
-from ..noise import grain, smooth_noise
+from ..noise import blurred, grain, smooth_noise
 from ..sdf import bump, capsule, inside
 from .bones import Skeleton, skeleton
 from .pose import FINGERS, long_bones
@@ -55,8 +55,8 @@ def tissues(grid: Grid) -> tuple[np.ndarray, Layers]:
 
 
 def finished(values: np.ndarray) -> np.ndarray:
-    """Return the values with the scanner's noise (8 HU), rounded to int16."""
-    noisy = values + grain(values.shape, SEED) * np.float32(8)
+    """Return the values with the scanner's blur and noise (8 HU), rounded to int16."""
+    noisy = blurred(values) + grain(values.shape, SEED) * np.float32(8)
     return np.rint(np.clip(noisy, -1024, 3071)).astype(np.int16)
 
 
