@@ -19,6 +19,8 @@ SCENE_SUFFIX = ".sfumato"
 SAMPLE = "sample:"
 #: What is behind a new scene, linear: the neutral grey on which the window shows it (sRGB 78).
 BACKGROUND = (0.0762, 0.0762, 0.0762, 1.0)
+#: Jittered frames of a new scene's picture: edges are smooth, and no grain is left.
+FRAMES = 4
 
 
 def is_scene(path: str) -> bool:
@@ -86,7 +88,7 @@ def open_scene(path: str, volume_path: str | None = None, read: ReadFlags | None
         If something cannot be read, or holds what a scene may not hold.
     """
     if not is_scene(path):
-        return Scene(volume=open_volume(volume_path or path, read), background=BACKGROUND)
+        return Scene(volume=open_volume(volume_path or path, read), background=BACKGROUND, frames=FRAMES)
     volume = open_volume(volume_path, read) if volume_path else None
     if Path(path).suffix.lower() == SCENE_SUFFIX:
         return Scene.open(path, volume)
