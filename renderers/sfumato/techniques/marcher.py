@@ -9,6 +9,7 @@ shows through, and classifies by pre-integration. `MarchPainter` is the ray cast
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -21,8 +22,10 @@ from ..gpu.volume_texture import EmptySpace, VolumeTexture, map_empty_space, upl
 from .frame import Frame
 from .stack import Stack, View, clip_uniforms
 
-#: Pixels of the picture marched in one piece of GPU work, so that a newer scene need not wait.
-PIECE_PIXELS = 512 * 256
+#: Seconds that a piece of GPU work should take, so that a newer scene need not wait; pieces adapt to it.
+PIECE_SECONDS = 0.04
+#: Pixels of the first piece.
+PIECE_PIXELS = 512 * 64
 #: Gradient, in value range per voxel, at which a highlight has half its strength.
 EDGE = 0.05
 _FAR = 1e30
@@ -112,6 +115,7 @@ class Marcher:
         self.device = device
         self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
         self._pair: tuple[Target, Target] | None = None
+        self._piece = float(PIECE_PIXELS)
 
     def program(self, variant: Variant, material: Material) -> Program:
         """Return the program of a variant, compiling it when first asked for."""
@@ -140,8 +144,8 @@ class Marcher:
         segments: tuple[int, int],
         box: tuple[int, int, int, int],
         start: bool,
-    ) -> Iterator[None]:
-        """March a range of segments over a box of pixels (x0, y0, x1, y1), yielding after each piece."""
+    ) -> Iterator[float]:
+        """March a range of segments over a box of pixels (x0, y0, x1, y1), yielding the share done each time."""
         assert self._pair is not None
         source, target = self._pair
         program.set(u_first=segments[0], u_last=segments[1], u_start=start)
@@ -149,16 +153,24 @@ class Marcher:
         if start:
             source.clear()
             target.clear()
-        x0, y0, x1, y1 = box
-        rows = max(1, PIECE_PIXELS // max(1, x1 - x0))
-        for y in range(y0, y1, rows):
+        x0, y, x1, y1 = box
+        while y < y1:
+            rows = min(max(1, int(self._piece) // (x1 - x0)), y1 - y)
+            began = time.perf_counter()
             target.fbo.use()
-            target.fbo.scissor = (x0, y, x1 - x0, min(rows, y1 - y))
+            target.fbo.scissor = (x0, y, x1 - x0, rows)
             program.draw()
             self.device.wait()
             target.fbo.scissor = (0, 0, *target.size)
-            yield
+            self._adapt(rows * (x1 - x0), time.perf_counter() - began)
+            y += rows
+            yield (y - box[1]) / (y1 - box[1])
         self._pair = (target, source)
+
+    def _adapt(self, pixels: int, seconds: float) -> None:
+        """Make pieces smaller at once where they take too long, and larger by and by."""
+        wanted = pixels * PIECE_SECONDS / max(seconds, 1e-6)
+        self._piece = min(max(wanted, 256.0), self._piece * 2, 1e9)
 
     def finish(self, frame: Frame) -> None:
         """Copy what was drawn to the frame's target."""
@@ -285,9 +297,7 @@ class MarchPainter:
             )
             program.set(**light_uniforms(frame, lights_towards(frame)))
         self.marcher.begin(frame)
-        pieces = max(1, math.ceil((box[3] - box[1]) * (box[2] - box[0]) / PIECE_PIXELS))
-        for k, _ in enumerate(self.marcher.march(frame, program, (0, 1 << 24), box, True)):
-            yield min(1.0, (k + 1) / pieces)
+        yield from self.marcher.march(frame, program, (0, 1 << 24), box, True)
         self.marcher.finish(frame)
         yield 1.0
 

@@ -20,7 +20,7 @@ def figure_10() -> Figure:
     volume = load("skull")
     skull = still(Scene(volume=volume, transfer=transfer, camera=look(volume.center, 250, turn=12, lift=4)))
     hand = skin_before_cloth()
-    hand = hand.with_(camera=look((66.0, 48.0, 165.0), 150))
+    hand = hand.with_(camera=look((70.0, 48.0, 163.0), 158))
     return Figure(
         10,
         "Touching or not, deep or flat",
