@@ -64,8 +64,8 @@ def figure_11() -> Figure:
         "from gradients make (a) and (b) look wet and bring out fine relief; (c) and (d) are the pure "
         "occlusion models. In either pair the lamp moves from the eye to the top left.",
         panels(
-            (headlamp(hand, specular=0.45, shininess=22), "headlamp, highlights"),
-            (lit(hand, specular=0.45, shininess=22), "top left, highlights"),
+            (headlamp(hand, specular=0.8, shininess=30), "headlamp, highlights"),
+            (lit(hand, specular=0.8, shininess=30), "top left, highlights"),
             (headlamp(hand), "headlamp"),
             (lit(hand), "top left"),
         ),

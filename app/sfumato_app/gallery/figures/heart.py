@@ -14,7 +14,7 @@ DEEP, WALL, LEAF = (0.36, 0.12, 0.06), (0.56, 0.30, 0.16), (0.66, 0.50, 0.34)
 def figure_13() -> Figure:
     """Cuts, Phong, and two lamps."""
     transfer = TransferFunction.from_points(
-        [(58, DEEP, 0.0), (95, WALL, 0.45), (150, WALL, 0.7), (240, LEAF, 0.85)]
+        [(72, DEEP, 0.0), (105, WALL, 0.5), (150, WALL, 0.7), (240, LEAF, 0.85)]
     )
     volume = load("heart")
     x, y, z = volume.center

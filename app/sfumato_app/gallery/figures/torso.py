@@ -8,17 +8,17 @@ from sfumato_samples import load
 from ..figure import Figure, panels
 from ..setting import headlamp, lit, look, phong, still
 
-BLOOD, CARTILAGE, BONE = (0.50, 0.075, 0.05), (0.56, 0.40, 0.26), (0.60, 0.53, 0.39)
+BLOOD, CARTILAGE, BONE = (0.36, 0.085, 0.06), (0.56, 0.40, 0.26), (0.60, 0.53, 0.39)
 
 
 def figure_12() -> Figure:
     """Four ways to light a chest."""
     transfer = TransferFunction.from_points(
-        [(150, BLOOD, 0.0), (190, BLOOD, 0.17), (240, BLOOD, 0.2), (290, CARTILAGE, 0.7), (400, BONE, 0.95),
+        [(150, BLOOD, 0.0), (190, BLOOD, 0.15), (240, BLOOD, 0.16), (290, CARTILAGE, 0.7), (400, BONE, 0.95),
          (1500, (0.66, 0.61, 0.50), 0.95)]
     )  # fmt: skip
     volume = load("torso")
-    chest = still(Scene(volume=volume, transfer=transfer, camera=look(volume.center, 380, turn=10, lift=3)))
+    chest = still(Scene(volume=volume, transfer=transfer, camera=look(volume.center, 372, turn=10, lift=3)))
     return Figure(
         12,
         "A chest, shaded in four ways",
