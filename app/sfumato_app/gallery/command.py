@@ -13,7 +13,7 @@ from cyclopts import App, Parameter
 from sfumato import Renderer, SfumatoError
 
 from ..errors import UsageError
-from .figure import Figure
+from .figure import Figure, file_name
 from .figures import FIGURES
 from .hero import draw_hero
 from .page import write_page
@@ -55,7 +55,7 @@ def _command(
         Parameter(name=["--output", "-o"], help="Folder of the pictures; the page lies beside it."),
     ] = FOLDER,
     only: Annotated[
-        str, Parameter(help="Numbers of figures, as in 1,8; the page is written with all alone.")
+        str, Parameter(help="Numbers of figures, as in 1,8; the page is written once all are there.")
     ] = "",
     hero: Annotated[bool, Parameter(negative="", help="Draw the README's picture instead.")] = False,
     scale: Annotated[float, Parameter(help="Of the pictures' sides.")] = 1.0,
@@ -67,23 +67,21 @@ def _command(
         return _draw_hero(output.parent / HERO, scale, frames)
     numbers = chosen(only)
     _make_folder(output)
-    drawn = {}
     for number in numbers:
-        figure = FIGURES[number]()
-        drawn[figure] = _draw(figure, output, scale, frames)
-    if numbers == tuple(FIGURES):
+        _draw(FIGURES[number](), output, scale, frames)
+    if all((output / file_name(number)).exists() for number in FIGURES):
         page = output.with_suffix(".md")
-        write_page(page, drawn, renderer_name(), date.today())
+        figures = [figure() for figure in FIGURES.values()]
+        write_page(page, {f: output / f.file_name for f in figures}, renderer_name(), date.today())
         print(page)
     return 0
 
 
-def _draw(figure: Figure, folder: Path, scale: float, frames: int | None) -> Path:
+def _draw(figure: Figure, folder: Path, scale: float, frames: int | None) -> None:
     began = time.perf_counter()
     path = folder / figure.file_name
     size = save(draw_figure(figure, scale, frames), path)
     print(f"{path}: {size / 1024:.0f} KiB, {time.perf_counter() - began:.0f} s", flush=True)
-    return path
 
 
 def _draw_hero(path: Path, scale: float, frames: int | None) -> int:

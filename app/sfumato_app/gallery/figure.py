@@ -77,7 +77,12 @@ class Figure:
     @property
     def file_name(self) -> str:
         """Name of the picture file."""
-        return f"fig{self.number:02d}.png"
+        return file_name(self.number)
+
+
+def file_name(number: int) -> str:
+    """Return the name of a figure's picture file."""
+    return f"fig{number:02d}.png"
 
 
 def panels(*parts: tuple[Scene | Cuts, str]) -> tuple[Panel, ...]:
