@@ -150,9 +150,16 @@ class Accumulation:
         if self._latest is None:
             self._latest, self._total = Target(device, self.size), Target(device, self.size)
         frame = Frame(device, self.scene, self.size, self._latest, self.quality, self.frames)
-        for progress in self.renderer.painter(self.scene).paint(frame):
-            yield progress
-            device.make_current()
+        pieces = self.renderer.painter(self.scene).paint(frame)
+        try:
+            for progress in pieces:
+                yield progress
+                device.make_current()
+        finally:
+            # A frame that was given up frees what it made: in its own context, whichever is current by then.
+            if device.usable:
+                device.make_current()
+            pieces.close()
         assert self._total is not None
         self.renderer.add(self._latest, self._total)
         device.wait()

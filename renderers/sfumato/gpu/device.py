@@ -42,6 +42,7 @@ class Device:
         self.ctx = _create_context()
         self.ctx.gc_mode = "context_gc"
         self._thread = threading.get_ident()
+        self._closed = False
         self.store = Store()
         info = self.ctx.info
         self.name = str(info["GL_RENDERER"])
@@ -133,8 +134,14 @@ class Device:
             if hasattr(thing, "release"):
                 thing.release()
 
+    @property
+    def usable(self) -> bool:
+        """Whether the device is open and this is its thread."""
+        return not self._closed and threading.get_ident() == self._thread
+
     def close(self) -> None:
         """Free everything."""
+        self._closed = True
         self.store.clear()
         self.collect()
         self.ctx.release()

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
-from ..scene import Scene
+from ..scene import Scene, nearest_possible_tilt
 from .footprint import characteristic_function, ellipse, moments
 from .medium import Medium
 from .rays import Frame, Region, view_rays, visible_interval
@@ -227,7 +227,9 @@ def light_grids(scene: Scene, stack: Stack, medium: Medium, region: Region) -> l
     assert scene.camera is not None
     params, grids = scene.technique, []
     for light, (tilt, rotation) in zip(scene.active_lights, scene.light_angles(), strict=True):
-        angles = (0.0 if scene.technique_id == "directional" else tilt, light.aperture, rotation)
+        # Within a degree of grazing the cone's section grows without bound: light stays that far away.
+        tilt = 0.0 if scene.technique_id == "directional" else nearest_possible_tilt(tilt, light.aperture)
+        angles = (tilt, light.aperture, rotation)
         texel = scene.volume.min_spacing / params.resolution
         frame = Frame.of(scene.camera)
         grids.append(LightGrid(stack, frame, medium, region, angles, params.occlusion, params.falloff, texel))

@@ -144,11 +144,10 @@ class Light:
         """Return the light's tilt and rotation in degrees as a camera sees it.
 
         A light that is attached to the patient, or that has a place, can come to stand beside the
-        subject, where the slice methods have no answer: its tilt is moved to the nearest one that has. So is
-        a tilt within a degree of where there is none, since a cone's section grows there without bound.
+        subject, where the slice methods have no answer: its tilt is moved to the nearest one that has.
         """
         if self.kind == "directional" and self.attached == "viewer":
-            return nearest_possible_tilt(self.tilt, self.aperture), self.rotation % 360.0
+            return self.tilt, self.rotation % 360.0
         towards = self.towards(basis, target)
         x, y, z = (float(np.dot(towards, axis)) for axis in (basis.right, basis.up, basis.back))
         tilt = math.degrees(math.acos(max(-1.0, min(1.0, z))))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -271,7 +271,7 @@ class MarchPainter:
         self.phong = phong
         self.marcher = Marcher(device)
 
-    def paint(self, frame: Frame) -> Iterator[float]:
+    def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
         material = prepare_material(frame)
         corners = visible_corners(frame, material)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Iterator
+from collections.abc import Generator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Painter(Protocol):
     """Draws one frame of one technique on a device and keeps what can be used again."""
 
-    def paint(self, frame: Frame) -> Iterator[float]:
+    def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw into ``frame.target``, yielding progress (0 to 1) after each bounded piece of GPU work."""
         ...
 

@@ -8,7 +8,7 @@ turns, since no pass may read what it writes); hard ones multiply a single buffe
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any
 
@@ -68,7 +68,7 @@ class HalfAnglePainter:
         self._programs: dict[tuple[str, tuple[tuple[str, int], ...]], Program] = {}
         self._buffers: list[Target] = []
 
-    def paint(self, frame: Frame) -> Iterator[float]:
+    def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
         frame.target.clear()
         material = prepare_material(frame)

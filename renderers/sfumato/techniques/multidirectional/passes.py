@@ -8,7 +8,7 @@ batches, and each batch is swept again from there when its turn comes.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +16,7 @@ import moderngl
 import numpy as np
 
 from ...gpu import Device, Program
+from ...scene import nearest_possible_tilt
 from ..footprint import slab_table
 from ..frame import Frame
 from ..marcher import (
@@ -75,7 +76,7 @@ class OcclusionPainter:
         self._layers: Any = None
         self._slab_term: tuple[Any, Any] | None = None
 
-    def paint(self, frame: Frame) -> Iterator[float]:
+    def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
         material = prepare_material(frame)
         corners = visible_corners(frame, material)
@@ -119,7 +120,11 @@ class OcclusionPainter:
         stack = Stack.through(view, crop_corners(frame), frame.step, frame.jitter)
         depths = view.coordinates(corners)[:, 2]
         lights = frame.scene.active_lights
-        angles = tuple((0.0, 0.0) if self.headlamp else a for a in frame.scene.light_angles())
+        # Within a degree of grazing the cone's section grows without bound: light stays that far away.
+        angles = tuple(
+            (0.0, 0.0) if self.headlamp else (nearest_possible_tilt(tilt, light.aperture), rotation)
+            for light, (tilt, rotation) in zip(lights, frame.scene.light_angles(), strict=True)
+        )
         lamps = lamps_for(frame, material, stack, angles, [light.aperture for light in lights])
         return Plan(
             material, stack, stack.slabs_of(depths.min(), depths.max()), lamps, angles, box, near_slabs(frame)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,7 @@ class ReferencePainter:
     def __init__(self, device: Any) -> None:
         self.device = device
 
-    def paint(self, frame: Frame) -> Iterator[float]:
+    def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw into the frame's target, yielding progress (0 to 1) after each batch of rows."""
         width, height = frame.size
         picture = np.zeros((height, width, 4))
