@@ -9,7 +9,8 @@ from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
 from .document import Document
 from .light import Light, nearest_possible_tilt, tilt_is_possible
 from .params import Field, Param, fields_of
-from .scene import MAX_LIGHTS, Scene, TechniqueParams, parse_setting
+from .paths import parse_setting
+from .scene import MAX_LIGHTS, Scene, TechniqueParams
 from .transfer import MAX_OPACITY, Region, TransferFunction, TransferPoint
 from .volume import Volume, VolumeInfo
 

@@ -9,13 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-import numpy as np
-
 from ..errors import LoadError, SceneError
 from .camera import Camera
 from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
 from .light import Light
-from .params import Param, check, coerce, fields_of, from_json, to_json
+from .params import Param, check, fields_of, from_json, to_json
+from .paths import changed, plant
 from .transfer import TransferFunction
 from .volume import Volume
 
@@ -157,9 +156,9 @@ class Scene:
         # Parts changed together (tilt and aperture, both crop bounds) are checked together, not one by one.
         tree: dict[str, Any] = {}
         for path, value in wanted.items():
-            _plant(tree, path.split("."), value)
+            plant(tree, path.split("."), value)
         try:
-            return _changed(self, tree, "")  # type: ignore[no-any-return]
+            return changed(self, tree, "")  # type: ignore[no-any-return]
         except RecursionError:
             raise SceneError("scene", wanted, "nested too deeply") from None
 
@@ -314,85 +313,3 @@ def _find_volume(reference: Any, scene_path: Path) -> Volume:
             "open the volume by itself",
         )
     return volume
-
-
-def _plant(tree: dict[str, Any], path: list[str], value: Any) -> None:
-    for name in path[:-1]:
-        branch = tree.setdefault(name, {})
-        if not isinstance(branch, _Branch):
-            branch = tree[name] = _Branch()
-        tree = branch
-    tree[path[-1]] = value
-
-
-class _Branch(dict[str, Any]):
-    """Changes below a path, as opposed to a value that is a dict."""
-
-
-def _changed(node: Any, changes: dict[str, Any], path: str) -> Any:
-    """Return a copy of a dataclass or tuple in which the named children are changed."""
-
-    def child(old: Any, change: Any, where: str) -> Any:
-        return _changed(old, change, where) if isinstance(change, _Branch) else change
-
-    prefix = f"{path}." if path else ""
-    if isinstance(node, tuple):
-        items = list(node)
-        for name, change in changes.items():
-            if not name.isdigit() or int(name) >= len(items):
-                raise SceneError(
-                    prefix + name,
-                    change if not isinstance(change, dict) else "",
-                    f"an index from 0 to {len(items) - 1} is needed" if items else "the list is empty",
-                )
-            items[int(name)] = child(items[int(name)], change, prefix + name)
-        return tuple(items)
-    if not dataclasses.is_dataclass(node) or isinstance(node, Volume):
-        raise SceneError(path, next(iter(changes.values())), "nothing can be set below this")
-    known = fields_of(type(node))
-    values = {}
-    for name, change in changes.items():
-        if name not in known:
-            raise SceneError(
-                prefix + name,
-                change if not isinstance(change, dict) else "",
-                "unknown field; known: " + ", ".join(known),
-            )
-        values[name] = child(getattr(node, name), change, prefix + name)
-    try:
-        return dataclasses.replace(node, **values)  # type: ignore[type-var]
-    except SceneError as error:
-        if error.path.startswith(prefix) and prefix:
-            raise
-        raise SceneError(prefix + error.path, error.value, error.allowed) from None
-
-
-def parse_setting(scene: Scene, path: str, text: str) -> Any:
-    """Turn a command line's text for a path of the scene into a value of the type that lives there.
-
-    Raises
-    ------
-    SceneError
-        If the path does not exist or the text does not fit.
-    """
-    try:
-        value = json.loads(text)
-    except ValueError:
-        value = text
-    node: Any = scene
-    for i, name in enumerate(path.split(".")):
-        where = ".".join(path.split(".")[: i + 1])
-        if isinstance(node, tuple) and name.isdigit() and int(name) < len(node):
-            node, hint, param = node[int(name)], Any, None
-        elif (
-            dataclasses.is_dataclass(node) and not isinstance(node, Volume) and name in fields_of(type(node))
-        ):
-            f = fields_of(type(node))[name]
-            node, hint, param = getattr(node, name), f.type, f.param
-        else:
-            raise SceneError(where, text, "there is no such field in the scene")
-    if path == "technique":
-        return value
-    if isinstance(node, np.ndarray | Volume):
-        raise SceneError(path, text, "this cannot be set")
-    return coerce(tuple(value) if isinstance(value, list) else value, hint, path, param)
