@@ -210,7 +210,7 @@ def _integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
         solid = tau > 0
         hit, a, b, x = hit[solid], a[solid], b[solid], (tau * (zb - za)[hit])[solid]
         alpha = -np.expm1(-x * secant[hit])
-        light = np.full((len(hit), 3), task.ambient) * alpha[:, None]
+        light = np.zeros((len(hit), 3))
         for cone in task.cones:
             light += _lit(task, cone, b if cone.rear else a, x, secant[hit])[:, None] * cone.radiance
         share = (1 - result[hit, 3])[:, None]
@@ -224,7 +224,8 @@ def _lit(task: Task, cone: Cone, p_world: np.ndarray, x: np.ndarray, v: np.ndarr
     form = rear_term if cone.rear else front_term
     total = np.zeros(len(x))
     for towards, s in zip(cone.directions, cone.secants, strict=True):
-        total += np.exp(-optical_depth(task, p_world, towards)) * form(x, v, s)
+        seen = np.exp(-optical_depth(task, p_world, towards))
+        total += (seen + (1 - seen) * task.ambient) * form(x, v, s)
     return total / len(cone.directions)
 
 

@@ -200,7 +200,7 @@ def _pixels(  # type: ignore[no-untyped-def]
                 mean[c] = _mean(density, integral, s0, s1, c) / mean[0]
             x = mean[0] * (zb - za)
             alpha = -math.expm1(-x * v)
-            light[:] = ambient * alpha
+            light[:] = 0.0
             for lamp in range(directions.shape[0]):
                 at = pb if rear[lamp] else pa
                 total = 0.0
@@ -221,8 +221,9 @@ def _pixels(  # type: ignore[no-untyped-def]
                         w[1],
                         w[2],
                     )
-                    if depth < DARK:
-                        total += math.exp(-depth) * _slab_term(x, v, secants[lamp, k], rear[lamp])
+                    seen = math.exp(-depth) if depth < DARK else 0.0
+                    if seen + ambient > 0:
+                        total += (seen + (1 - seen) * ambient) * _slab_term(x, v, secants[lamp, k], rear[lamp])
                 light += radiance[lamp] * (total / directions.shape[1])
             for c in range(3):
                 result[p, c] += share * (mean[1 + c] * light[c] + mean[4 + c] * alpha)

@@ -281,7 +281,7 @@ def render(scene: Scene, size: tuple[int, int], frame_index: int = 0) -> np.ndar
         alpha = -np.expm1(-x * v)
         if lit:
             points = [rays.start[hit] + rays.slope[hit] * stack.plane(j) for j in (i, i + 1)]
-            shade = _lit(scene, grids, i, points, x, v, alpha) + scene.technique.ambient * alpha[:, None]
+            shade = _lit(scene, grids, i, points, x, v, alpha)
         else:
             shade = alpha[:, None]
         share = 1 - picture[hit, 3]
@@ -303,6 +303,7 @@ def _lit(
     total = np.zeros((len(x), 3))
     for light, grid in zip(scene.active_lights, grids, strict=True):
         reaching = grid.reaching(slab, points[1] if grid.rear else points[0])
+        reaching += (1 - reaching) * scene.technique.ambient  # what no shadow takes away
         term = grid.rule.term(x, v, grid.rear) if grid.form == "extinction" else alpha
         total += (reaching * term)[:, None] * np.asarray(light.color) * light.intensity
     return total

@@ -60,7 +60,7 @@ struct Meeting { vec2 lateral; vec3 t; float value; };
 
 // Colour that a slab of the occlusion methods sends to the eye.
 vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float depth, float secant, vec3 t, vec3 view) {
-    vec3 result = color * (alpha * u_ambient);
+    vec3 result = vec3(0.0);
 #if LITERAL
     vec4 returned = vec4(alpha);
 #else
@@ -74,7 +74,8 @@ vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float dept
     for (int l = 0; l < LIGHTS; ++l) {
         bool rear = u_rear[l] == 1;
         float visible = visibility(l, i, rear ? back.lateral : front.lateral, rear ? back.t : front.t, rear ? back.value : front.value);
-        vec3 arrives = u_light_color[l] * visible;
+        // What no shadow takes away; a fully lit surface stays as bright as it is.
+        vec3 arrives = u_light_color[l] * mix(visible, 1.0, u_ambient);
         result += arrives * color * returned[l];
 #if SPECULAR
         if (strength > 0.0 && dot(gradient, u_towards[l]) > 0.0) {

@@ -62,7 +62,7 @@ class OcclusionParams(TechniqueParams):
         ),
     ] = 40.0
     ambient: Annotated[
-        float, Param("Light that no shadow takes away", label="Ambient", ge=0, le=1, tab="light")
+        float, Param("Share of each lamp that no shadow takes away", label="Ambient", ge=0, le=1, tab="light")
     ] = 0.0
     resolution: Annotated[
         float,
