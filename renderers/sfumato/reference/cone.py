@@ -45,12 +45,15 @@ class Cone:
         Against the slabs' normal.
     radiance : ndarray, shape (3,)
         Colour times intensity, divided by what an opaque facing wall returns.
+    facing : float
+        What an opaque facing wall returns.
     """
 
     directions: np.ndarray
     secants: np.ndarray
     radiance: np.ndarray
     rear: bool
+    facing: float
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,7 @@ def cones(scene: Scene, count: int) -> tuple[Cone, ...]:
         world = local @ np.stack([frame.right, frame.up, -frame.forward])
         facing = secant_rule(min(tilt, 180 - tilt), light.aperture).facing
         radiance = np.asarray(light.color, dtype=np.float64) * light.intensity / facing
-        made.append(Cone(world, 1 / np.abs(local[:, 2]), radiance, tilt > 90))
+        made.append(Cone(world, 1 / np.abs(local[:, 2]), radiance, tilt > 90, facing))
     return tuple(made)
 
 
@@ -212,7 +215,8 @@ def _integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
         alpha = -np.expm1(-x * secant[hit])
         light = np.zeros((len(hit), 3))
         for cone in task.cones:
-            light += _lit(task, cone, b if cone.rear else a, x, secant[hit])[:, None] * cone.radiance
+            lit = _lit(task, cone, b if cone.rear else a, x, secant[hit])
+            light += ((1 - task.ambient) * lit + task.ambient * cone.facing * alpha)[:, None] * cone.radiance
         share = (1 - result[hit, 3])[:, None]
         result[hit, :3] += share * (color[solid] * light + emission[solid] * alpha[:, None])
         result[hit, 3] += share[:, 0] * alpha
@@ -224,8 +228,7 @@ def _lit(task: Task, cone: Cone, p_world: np.ndarray, x: np.ndarray, v: np.ndarr
     form = rear_term if cone.rear else front_term
     total = np.zeros(len(x))
     for towards, s in zip(cone.directions, cone.secants, strict=True):
-        seen = np.exp(-optical_depth(task, p_world, towards))
-        total += (seen + (1 - seen) * task.ambient) * form(x, v, s)
+        total += np.exp(-optical_depth(task, p_world, towards)) * form(x, v, s)
     return total / len(cone.directions)
 
 

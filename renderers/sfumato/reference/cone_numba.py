@@ -39,6 +39,7 @@ def integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
             secants,
             radiance,
             rear,
+            np.array([cone.facing for cone in task.cones]),
             task.ambient,
             task.light_step,
             medium.voxels,
@@ -171,6 +172,7 @@ def _pixels(  # type: ignore[no-untyped-def]
     secants,
     radiance,
     rear,
+    facing,
     ambient,
     step,
     voxels,
@@ -221,10 +223,11 @@ def _pixels(  # type: ignore[no-untyped-def]
                         w[1],
                         w[2],
                     )
-                    seen = math.exp(-depth) if depth < DARK else 0.0
-                    if seen + ambient > 0:
-                        total += (seen + (1 - seen) * ambient) * _slab_term(x, v, secants[lamp, k], rear[lamp])
-                light += radiance[lamp] * (total / directions.shape[1])
+                    if depth < DARK:
+                        total += math.exp(-depth) * _slab_term(x, v, secants[lamp, k], rear[lamp])
+                light += radiance[lamp] * (
+                    (1 - ambient) * total / directions.shape[1] + ambient * facing[lamp] * alpha
+                )
             for c in range(3):
                 result[p, c] += share * (mean[1 + c] * light[c] + mean[4 + c] * alpha)
             result[p, 3] += share * alpha

@@ -303,7 +303,8 @@ def _lit(
     total = np.zeros((len(x), 3))
     for light, grid in zip(scene.active_lights, grids, strict=True):
         reaching = grid.reaching(slab, points[1] if grid.rear else points[0])
-        reaching += (1 - reaching) * scene.technique.ambient  # what no shadow takes away
         term = grid.rule.term(x, v, grid.rear) if grid.form == "extinction" else alpha
-        total += (reaching * term)[:, None] * np.asarray(light.color) * light.intensity
+        share = scene.technique.ambient  # what no shadow takes away, not even a sample's own
+        returned = (1 - share) * reaching * term + share * alpha
+        total += returned[:, None] * np.asarray(light.color) * light.intensity
     return total

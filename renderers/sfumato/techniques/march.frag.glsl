@@ -74,9 +74,9 @@ vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float dept
     for (int l = 0; l < LIGHTS; ++l) {
         bool rear = u_rear[l] == 1;
         float visible = visibility(l, i, rear ? back.lateral : front.lateral, rear ? back.t : front.t, rear ? back.value : front.value);
-        // What no shadow takes away; a fully lit surface stays as bright as it is.
-        vec3 arrives = u_light_color[l] * mix(visible, 1.0, u_ambient);
-        result += arrives * color * returned[l];
+        vec3 arrives = u_light_color[l] * visible;
+        // Ambient is what no shadow takes away, not even a sample's own; a fully lit surface stays as bright as it is.
+        result += u_light_color[l] * color * mix(visible * returned[l], alpha, u_ambient);
 #if SPECULAR
         if (strength > 0.0 && dot(gradient, u_towards[l]) > 0.0) {
             float shine = pow(max(dot(gradient / strength, normalize(u_towards[l] + view)), 0.0), u_shininess);
