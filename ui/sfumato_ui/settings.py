@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
+import platformdirs
 from qtpy.QtCore import QSettings
 
 
@@ -13,3 +15,17 @@ def settings() -> QSettings:
     if folder:
         return QSettings(os.path.join(folder, "sfumato.ini"), QSettings.Format.IniFormat)
     return QSettings(QSettings.Format.IniFormat, QSettings.Scope.UserScope, "sfumato", "sfumato")
+
+
+def data_dir() -> Path:
+    """Return the folder of what the user makes (presets, autosaves), which exists, or `SFUMATO_SETTINGS`.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be made.
+    """
+    folder = os.environ.get("SFUMATO_SETTINGS")
+    path = Path(folder) if folder else platformdirs.user_data_path("sfumato", appauthor=False)
+    path.mkdir(parents=True, exist_ok=True)
+    return path
