@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 from pathlib import Path
@@ -9,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sfumato
+from sfumato.renderer import Renderer
 from sfumato_app.bench import main
 from sfumato_app.bench.machine import is_software
 from sfumato_app.bench.measure import Result, Spread
@@ -28,6 +31,18 @@ def told(tmp_path_factory):
     files = [text for option, name in names.items() for text in (option, str(folder / name))]
     assert main([*TINY, *files]) == 0
     return json.loads((folder / "b.json").read_text()), folder
+
+
+@pytest.mark.gpu
+def test_vtk_takes_no_context_of_ours_with_it(still_life, told):
+    scene = sfumato.Scene(volume=still_life)
+    job = Renderer().begin(scene, (32, 32))
+    frame = job.add_frame()
+    next(frame)
+    gc.collect()  # where VTK's windows would go, with the EGL display that we share
+    list(frame)
+    assert job.picture()[..., :3].max() > 60
+    job.renderer.close()
 
 
 @pytest.mark.gpu

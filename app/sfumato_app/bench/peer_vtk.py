@@ -7,6 +7,7 @@ given linear colours, and what it returns is taken for linear light.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -31,7 +32,9 @@ class VtkStage:
             raise Unavailable(f"VTK is not installed ({error})") from None
         self.scene = setting.scene("raycast-phong")
         # Not asked for EGL by name, VTK tries for an X server first, and complains where there is none.
-        self.window = getattr(opengl, "vtkEGLRenderWindow", vtkRenderWindow)()
+        window_class = getattr(opengl, "vtkEGLRenderWindow", vtkRenderWindow)
+        _keep_display(window_class)
+        self.window = window_class()
         self.window.SetOffScreenRendering(1)
         self.window.SetMultiSamples(0)
         self.window.SetSize(*setting.picture_size)
@@ -88,6 +91,29 @@ class VtkStage:
         width, height, _ = grab.GetOutput().GetDimensions()
         flat = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())  # type: ignore[no-untyped-call]
         return np.asarray(flat.reshape(height, width, -1)[::-1, :, :3])
+
+
+    def close(self) -> None:
+        """Give VTK's context back now, not whenever the garbage collector comes by in the middle of a frame."""
+        for volume in self._volumes:
+            self.renderer.RemoveVolume(volume)
+        self._volumes.clear()
+        self.window.RemoveRenderer(self.renderer)
+        self.window.Finalize()
+
+
+@functools.cache
+def _keep_display(window_class: Any) -> Any:
+    """Return a window that is never closed.
+
+    With its last window VTK terminates the EGL display, which is the process's own and not VTK's: all our
+    contexts would be lost with it.
+    """
+    keeper = window_class()
+    keeper.SetOffScreenRendering(1)
+    keeper.SetSize(1, 1)
+    keeper.Initialize()
+    return keeper
 
 
 class Vtk:

@@ -38,7 +38,10 @@ class Stage:
         return next((window.device for window in self.windows.values()), "")
 
     def close(self) -> None:
-        """Free our part of the GPU; VTK frees its own with its last window."""
+        """Free what both sides hold on the GPU."""
+        for window in self.windows.values():
+            window.close()
+        self.windows.clear()
         self.renderer.close()
 
 

@@ -95,6 +95,8 @@ class Device:
             If the GPU does not answer: the context is lost, or it ran out of memory.
         """
         fence = self._fence_sync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)
+        if not fence:
+            raise GpuError("the graphics context was lost", "restart the program; the scene can be saved first")
         try:
             for _ in range(MAX_FENCE_WAITS):
                 answer = self._client_wait(fence, GL_SYNC_FLUSH_COMMANDS_BIT, int(FENCE_SECONDS * 1e9))
