@@ -92,7 +92,6 @@ class VtkStage:
         flat = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())  # type: ignore[no-untyped-call]
         return np.asarray(flat.reshape(height, width, -1)[::-1, :, :3])
 
-
     def close(self) -> None:
         """Give VTK's context back now, not whenever the garbage collector comes by in the middle of a frame."""
         for volume in self._volumes:

@@ -96,7 +96,9 @@ class Device:
         """
         fence = self._fence_sync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)
         if not fence:
-            raise GpuError("the graphics context was lost", "restart the program; the scene can be saved first")
+            raise GpuError(
+                "the graphics context was lost", "restart the program; the scene can be saved first"
+            )
         try:
             for _ in range(MAX_FENCE_WAITS):
                 answer = self._client_wait(fence, GL_SYNC_FLUSH_COMMANDS_BIT, int(FENCE_SECONDS * 1e9))
