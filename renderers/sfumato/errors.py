@@ -59,9 +59,13 @@ class GpuError(SfumatoError):
         What was asked of the device.
     offers : str
         What the device offers, or what it answered.
+    remedy : str
+        What would help: ``smaller picture``, ``smaller volume``, ``other technique`` (its shader does not
+        compile), ``new renderer`` (the context is lost), or empty.
     """
 
-    def __init__(self, asked: str, offers: str = "") -> None:
+    def __init__(self, asked: str, offers: str = "", remedy: str = "") -> None:
         self.asked = asked
+        self.remedy = remedy
         self.offers = offers
         super().__init__(asked + (f"; {offers}" if offers else ""))

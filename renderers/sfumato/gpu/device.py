@@ -20,10 +20,13 @@ GL_SYNC_GPU_COMMANDS_COMPLETE = 0x9117
 GL_SYNC_FLUSH_COMMANDS_BIT = 0x0001
 GL_TIMEOUT_EXPIRED = 0x911B
 GL_WAIT_FAILED = 0x911D
+GL_CONTEXT_LOST = 0x0507
 
 #: Waiting for the GPU is cut into pieces, so that a lost context cannot hold a thread for ever.
 FENCE_SECONDS = 2.0
 MAX_FENCE_WAITS = 60
+#: A lost context reports errors without end.
+MAX_OLD_ERRORS = 16
 
 
 class Device:
@@ -97,7 +100,9 @@ class Device:
         fence = self._fence_sync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)
         if not fence:
             raise GpuError(
-                "the graphics context was lost", "restart the program; the scene can be saved first"
+                "the graphics context was lost",
+                "restart the program; the scene can be saved first",
+                "new renderer",
             )
         try:
             for _ in range(MAX_FENCE_WAITS):
@@ -106,30 +111,43 @@ class Device:
                     raise GpuError(
                         "the graphics driver stopped answering",
                         "try a smaller picture, or restart the program",
+                        "new renderer",
                     )
                 if answer != GL_TIMEOUT_EXPIRED:
                     return
             raise GpuError(
-                "the graphics driver did not finish a pass in two minutes", "try a smaller picture"
+                "the graphics driver did not finish a pass in two minutes",
+                "try a smaller picture",
+                "smaller picture",
             )
         finally:
             self._delete_sync(fence)
 
     @contextmanager
-    def checked(self, doing: str) -> Iterator[None]:
-        """Raise a `GpuError` if OpenGL reports an error within the block, naming what was being done."""
-        while self._get_error():  # moderngl leaves one behind when it makes a framebuffer
-            pass
+    def checked(self, doing: str, remedy: str = "smaller picture") -> Iterator[None]:
+        """Raise a `GpuError` if OpenGL reports an error within the block, naming what was being done.
+
+        Parameters
+        ----------
+        doing : str
+            What is asked of the device, for the message.
+        remedy : str
+            What would help if memory is short, as in `GpuError`.
+        """
+        for _ in range(MAX_OLD_ERRORS):  # moderngl leaves one behind when it makes a framebuffer
+            if not self._get_error():
+                break
         try:
             yield
         except Exception as error:  # moderngl raises its own bare Error
-            raise GpuError(doing, f"{error} on {self.name}") from None
+            raise GpuError(doing, f"{error} on {self.name}", remedy) from None
         code = self._get_error()
         if code:
-            name = {0x0505: "out of GPU memory", 0x0506: "incomplete framebuffer"}.get(
+            name = {0x0505: "out of GPU memory", 0x0506: "incomplete framebuffer", 0x0507: "context lost"}.get(
                 code, f"OpenGL error 0x{code:04x}"
             )
-            raise GpuError(doing, f"{name} on {self.name}; use a smaller picture or volume")
+            lost = code == GL_CONTEXT_LOST
+            raise GpuError(doing, f"{name} on {self.name}; use a {remedy}", "new renderer" if lost else remedy)
 
     def collect(self) -> None:
         """Free GPU objects that nothing refers to any more."""

@@ -69,7 +69,7 @@ class Program:
             self._program = device.ctx.program(vertex_shader=corners, fragment_shader=text)
         except Exception as error:  # moderngl raises its own bare Error
             raise GpuError(
-                f"shader {fragment.file} does not compile", _name_lines(str(error), files)
+                f"shader {fragment.file} does not compile", _name_lines(str(error), files), "other technique"
             ) from None
         self._array = device.ctx.vertex_array(self._program, [])
         self._mesh: Any = None

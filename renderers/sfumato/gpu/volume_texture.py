@@ -52,11 +52,12 @@ def upload_volume(device: Device, volume: Volume) -> VolumeTexture:
         raise GpuError(
             f"a volume of {' x '.join(map(str, volume.dims))} voxels",
             f"{device.name} takes at most {device.max_texture_3d} along a side; load it at a lower resolution",
+            "smaller volume",
         )
     voxels, domain = normalised(volume)
     scale = np.float32(1 / np.iinfo(voxels.dtype).max)
     low, high = block_extremes(voxels)
-    with device.checked(f"{voxels.nbytes >> 20} MiB for the volume"):
+    with device.checked(f"{voxels.nbytes >> 20} MiB for the volume", "smaller volume"):
         texture = device.ctx.texture3d(volume.dims, 1, voxels, alignment=1, dtype=_DTYPE[voxels.itemsize])
     texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
     texture.repeat_x = texture.repeat_y = texture.repeat_z = False
