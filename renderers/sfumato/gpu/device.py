@@ -143,11 +143,15 @@ class Device:
             raise GpuError(doing, f"{error} on {self.name}", remedy) from None
         code = self._get_error()
         if code:
-            name = {0x0505: "out of GPU memory", 0x0506: "incomplete framebuffer", 0x0507: "context lost"}.get(
-                code, f"OpenGL error 0x{code:04x}"
-            )
+            name = {
+                0x0505: "out of GPU memory",
+                0x0506: "incomplete framebuffer",
+                0x0507: "context lost",
+            }.get(code, f"OpenGL error 0x{code:04x}")
             lost = code == GL_CONTEXT_LOST
-            raise GpuError(doing, f"{name} on {self.name}; use a {remedy}", "new renderer" if lost else remedy)
+            raise GpuError(
+                doing, f"{name} on {self.name}; use a {remedy}", "new renderer" if lost else remedy
+            )
 
     def collect(self) -> None:
         """Free GPU objects that nothing refers to any more."""
