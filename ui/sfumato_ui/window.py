@@ -39,6 +39,7 @@ from .settings import settings
 from .status import StatusLine
 from .tab_order import set_tab_order
 from .theme import apply_theme
+from .thumbnails import Thumbnails
 from .viewport import Viewport
 from .worker import Picture, RenderWorker
 
@@ -64,6 +65,7 @@ class MainWindow(QMainWindow):
         self.viewport = Viewport(self.editor)
         self.messages = MessageBar(self.viewport)
         self.worker = RenderWorker()
+        self.thumbnails = Thumbnails(self.worker, self)
         self.driver = ViewDriver(self.editor, self.viewport, self.worker)
         self.files = Files(self, self.editor, self.viewport, self.worker, self.messages)
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
@@ -112,6 +114,7 @@ class MainWindow(QMainWindow):
         self.top.file_wanted.connect(self.files.ask_to_open)
         self.top.folder_wanted.connect(self.files.ask_to_open_folder)
         self.top.sample_wanted.connect(self.files.open)
+        self.top.recent.chosen.connect(self.files.open)
         self.top.save.clicked.connect(lambda: self.files.save_scene())
         self.top.picture.clicked.connect(self.files.ask_to_save_picture)
         self.top.unlit.connect(self.driver.set_unlit)
@@ -137,6 +140,7 @@ class MainWindow(QMainWindow):
             "Ctrl+O": self.files.ask_to_open,
             "Ctrl+Shift+O": self.files.ask_to_open_folder,
             "Ctrl+S": lambda: self.files.save_scene(),
+            "Ctrl+Shift+S": lambda: self.files.ask_to_save_scene(),
             "Ctrl+E": self.files.ask_to_save_picture,
             "Ctrl+Z": self.editor.undo,
             "Ctrl+Shift+Z": self.editor.redo,

@@ -10,7 +10,7 @@ from __future__ import annotations
 import threading
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -32,6 +32,9 @@ DRAG_LADDER = (
 )
 #: A drag frame slower than this, in seconds, makes the next one coarser; one quicker than a fifth, finer.
 DRAG_SECONDS = 0.25
+#: Quality and jittered frames of thumbnails.
+THUMBNAIL = Quality(step=2.0, light=2.0)
+THUMBNAIL_FRAMES = 2
 #: A drag's frame that takes longer than this, in seconds, shows its progress.
 SLOW_SECONDS = 0.5
 
@@ -73,6 +76,16 @@ class SaveRequest:
     done: str
 
 
+@dataclass(frozen=True)
+class ThumbnailRequest:
+    """A control wants a small picture; ``group`` and ``key`` are its own names for it."""
+
+    group: str
+    key: Hashable
+    scene: Scene
+    size: tuple[int, int]
+
+
 class RenderWorker(QObject):
     """Owns the renderer and its thread; the methods are called from the window's thread."""
 
@@ -85,6 +98,8 @@ class RenderWorker(QObject):
     saved = Signal(str)
     save_progress = Signal(float)
     save_cancelled = Signal()
+    #: A thumbnail is drawn (its request, the QImage).
+    thumbnail = Signal(object, object)
 
     def __init__(self) -> None:
         super().__init__()
@@ -93,6 +108,9 @@ class RenderWorker(QObject):
         self._view: ViewRequest | None = None
         self._save: SaveRequest | None = None
         self._cancel_save = False
+        self._thumbnails: list[ThumbnailRequest] = []
+        #: Whether the still picture of the newest view is finished.
+        self._settled = False
         self._stopping = False
         self._rung = 0
         self._thread = threading.Thread(target=self._run, name="sfumato-render", daemon=True)
@@ -118,6 +136,12 @@ class RenderWorker(QObject):
         """Give up the picture that is being written."""
         self._cancel_save = True
 
+    def want_thumbnails(self, group: str, requests: list[ThumbnailRequest]) -> None:
+        """Ask for small pictures when there is nothing else to do, instead of all others of their group."""
+        with self._wake:
+            self._thumbnails = [r for r in self._thumbnails if r.group != group] + requests
+            self._wake.notify()
+
     def ask_to_stop(self) -> None:
         """Ask the thread to end after the piece of work that it is in."""
         with self._wake:
@@ -142,12 +166,14 @@ class RenderWorker(QObject):
 
     def _next_job(self) -> None:
         with self._wake:
-            while not (self._stopping or self._view or self._save):
+            while not (self._stopping or self._view or self._save or self._next_thumbnail):
                 self._wake.wait()
             save, self._save = self._save, None
-            view = None
+            view = thumbnail = None
             if save is None:
+                thumbnail = self._next_thumbnail if self._view is None else None
                 view, self._view = self._view, None
+                self._settled = self._settled and view is None
         if self._stopping:
             return
         try:
@@ -156,6 +182,8 @@ class RenderWorker(QObject):
                 self._write(renderer, save)
             elif view is not None:
                 self._draw(renderer, view)
+            elif thumbnail is not None:
+                self._draw_thumbnail(renderer, thumbnail)
         except Exception as error:
             if not self._stopping:
                 self.failed.emit(one_line(error))
@@ -184,6 +212,35 @@ class RenderWorker(QObject):
                 if request.interactive:
                     self._choose_rung(seconds)
         self.progress.emit(1.0)
+        self._settled = not request.interactive
+
+    @property
+    def _next_thumbnail(self) -> ThumbnailRequest | None:
+        """The thumbnail to draw now, if there is time for one."""
+        return self._thumbnails[0] if self._thumbnails and self._settled else None
+
+    def _draw_thumbnail(self, renderer: Any, request: ThumbnailRequest) -> None:
+        """Draw a thumbnail; a wish stays open if a view or a save comes in between."""
+        try:
+            with _accumulation(renderer, request.scene, request.size, THUMBNAIL) as accumulation:
+                for _ in range(THUMBNAIL_FRAMES):
+                    for _ in accumulation.add_frame():
+                        if self._stopping or self._view or self._save or not self._still_wanted(request):
+                            return
+                image = _image(accumulation)
+        except Exception:
+            # A scene that cannot be drawn says so when it is the picture; here its place stays empty.
+            self._drop_thumbnail(request)
+            return
+        self._drop_thumbnail(request)
+        self.thumbnail.emit(request, image)
+
+    def _still_wanted(self, request: ThumbnailRequest) -> bool:
+        return any(r is request for r in self._thumbnails)
+
+    def _drop_thumbnail(self, request: ThumbnailRequest) -> None:
+        with self._wake:
+            self._thumbnails = [r for r in self._thumbnails if r is not request]
 
     def _outdated(self, request: ViewRequest) -> bool:
         """Tell whether to drop the work for a request: a drag's frame only for other data or technique."""
@@ -224,12 +281,19 @@ def _accumulation(renderer: Any, scene: Scene, size: tuple[int, int], quality: Q
 
 
 def _picture(accumulation: Any, request: ViewRequest, seconds: float) -> Picture:
+    shown = _image(accumulation)
+    return Picture(shown, request.scene, request.size, seconds, accumulation.frames, request.interactive)
+
+
+def _image(accumulation: Any) -> QImage:
+    """Return the picture so far in the form that paints quickest.
+
+    The conversion, which also copies, is done here: the window's thread has nothing left to do but to paint.
+    """
     pixels = np.ascontiguousarray(accumulation.picture())
     height, width = pixels.shape[:2]
     image = QImage(pixels.data, width, height, 4 * width, QImage.Format.Format_RGBA8888)
-    # Converted here, which also copies, so that the window's thread has nothing left to do but to paint.
-    shown = image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
-    return Picture(shown, request.scene, request.size, seconds, accumulation.frames, request.interactive)
+    return image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
 
 
 def one_line(error: BaseException) -> str:
