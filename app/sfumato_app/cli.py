@@ -116,6 +116,7 @@ PROGRAMS = (
     ("bench", "bench", "Measure the techniques on this machine."),
     ("contact-sheet", "contact_sheet", "Draw every volume in a folder of data sets to one labelled sheet."),
     ("gallery", "gallery", "Draw the gallery: the figures of Soltesova2010 with our samples."),
+    ("quality", "quality", "Measure how near shadows are to the ray-traced cone."),
 )
 
 
