@@ -16,7 +16,8 @@ from qtpy.QtWidgets import QApplication, QDialog, QDialogButtonBox, QFileDialog,
 
 from sfumato import Scene
 from sfumato.export.png import open_png
-from sfumato_ui.dialogs import PictureDialog, SeriesDialog
+from sfumato_ui.dialogs import PictureDialog
+from sfumato_ui.series_dialog import SeriesDialog
 from sfumato_ui.window import MainWindow
 
 

@@ -9,6 +9,7 @@ import sfumato_samples
 
 from .editing import Editor
 from .icons import icon
+from .recent import RecentMenu
 from .theme import current_theme
 
 
@@ -27,7 +28,7 @@ def tool_button(name: str, tip: str, *, text: str = "", checkable: bool = False)
 
 
 class TopBar(QFrame):
-    """Open, Save, Undo, Redo, and to the right Unlit and Save picture."""
+    """Open, Save, Undo, Redo, and to the right Before/After and Export."""
 
     #: Unlit is held (True) or let go.
     unlit = Signal(bool)
@@ -43,11 +44,15 @@ class TopBar(QFrame):
         self.open = tool_button("Open", "Open a volume, a folder or a scene (Ctrl+O)", text="Open")
         self.open.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.open.setMenu(self._open_menu())
-        self.save = tool_button("Save scene", "Save the scene (Ctrl+S)", text="Save")
+        self.save = tool_button(
+            "Save scene", "Save the scene (Ctrl+S; under another name Ctrl+Shift+S)", text="Save"
+        )
         self.undo = tool_button("Undo", "")
         self.redo = tool_button("Redo", "")
-        self.before = tool_button("Unlit", "Hold to see the picture without light (hold B)", text="Unlit")
-        self.picture = tool_button("Save picture", "Save the picture as PNG (Ctrl+E)", text="Save picture")
+        self.before = tool_button(
+            "Before/After", "Hold to see the picture without light (hold B)", text="Before/After"
+        )
+        self.picture = tool_button("Export", "Export the picture for screen or print (Ctrl+E)", text="Export")
         row = QHBoxLayout(self)
         row.setContentsMargins(8, 4, 8, 4)
         row.setSpacing(2)
@@ -70,8 +75,11 @@ class TopBar(QFrame):
 
     def _open_menu(self) -> QMenu:
         menu = QMenu(self)
+        menu.setToolTipsVisible(True)
         menu.addAction("File…\tCtrl+O", self.file_wanted.emit)
         menu.addAction("Folder…\tCtrl+Shift+O", self.folder_wanted.emit)
+        self.recent = RecentMenu(menu)
+        menu.addMenu(self.recent)
         menu.addSection("Samples")
         for entry in sfumato_samples.catalogue():
             action = menu.addAction(entry.title)
@@ -114,7 +122,8 @@ class ToolStrip(QFrame):
         self.setObjectName("Strip")
         self.tools = {
             "orbit": tool_button("Orbit", "Orbit: drag turns the subject (Esc)", checkable=True),
-            "light": tool_button("Light", "Light: drag moves the selected lamp (L)", checkable=True),
+            "light": tool_button("Light", "Light: drag moves the lamps (L)", checkable=True),
+            "clip": tool_button("Clip", "Clip: drag the faces of the crop box and the planes (C)", checkable=True),
         }
         self.fit = tool_button("Fit", "See the whole subject (Home)")
         column = QVBoxLayout(self)

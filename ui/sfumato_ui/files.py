@@ -6,15 +6,18 @@ from pathlib import Path
 from typing import Any
 
 from qtpy.QtCore import QObject, Signal
-from qtpy.QtWidgets import QFileDialog, QWidget
+from qtpy.QtWidgets import QDialog, QFileDialog, QWidget
 
 from sfumato import Scene, SfumatoError
 from sfumato.export.png import write_png
 
-from .dialogs import PictureDialog, SeriesDialog, ask_about_unsaved
+from .dialogs import PictureDialog, ask_about_unsaved
 from .editing import Editor
-from .loading import SCENE_SUFFIX, Loader
+from .loading import SCENE_SUFFIX, Loader, Wish
 from .messages import MessageBar
+from .raw_dialog import RawDialog
+from .recent import last_folder, remember
+from .series_dialog import SeriesDialog
 from .theme import PICTURE_GREY
 from .viewport import Viewport
 from .worker import RenderWorker, SaveRequest
@@ -41,16 +44,18 @@ class Files(QObject):
         self._worker, self._bar = worker, bar
         self.loader = Loader()
         self.scene_path = ""
-        self._opening = ""
+        self._wish = Wish("")
         self._connect()
 
     def _connect(self) -> None:
         loader, worker = self.loader, self._worker
         loader.progress.connect(
-            lambda done, text: self._bar.show_progress(f"Opening {self._opening}… {text}", done)
+            lambda done, text: self._bar.show_progress(f"Opening {self._wish.name}… {text}", done)
         )
         loader.loaded.connect(self._on_loaded)
         loader.several.connect(self._ask_for_series)
+        loader.raw_found.connect(self._ask_for_form)
+        loader.reduced.connect(self._on_reduced)
         loader.failed.connect(self._on_failed)
         loader.cancelled.connect(lambda: self._bar.clear("progress"))
         worker.save_progress.connect(lambda done: self._bar.show_progress("Rendering the picture…", done))
@@ -66,7 +71,7 @@ class Files(QObject):
     # -- opening ----------------------------------------------------------------------------------
     def ask_to_open(self) -> None:
         """Let the user choose a file; folders are dropped on the window or chosen by any file in them."""
-        dialog = QFileDialog(self._window, "Open a volume or a scene")
+        dialog = QFileDialog(self._window, "Open a volume or a scene", last_folder())
         dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
         dialog.fileSelected.connect(self.open)
         dialog.finished.connect(dialog.deleteLater)
@@ -74,24 +79,29 @@ class Files(QObject):
 
     def ask_to_open_folder(self) -> None:
         """Let the user choose a folder."""
-        dialog = QFileDialog(self._window, "Open a folder")
+        dialog = QFileDialog(self._window, "Open a folder", last_folder())
         dialog.setFileMode(QFileDialog.FileMode.Directory)
         dialog.setOption(QFileDialog.Option.ShowDirsOnly)
         dialog.fileSelected.connect(self.open)
         dialog.finished.connect(dialog.deleteLater)
         dialog.open()
 
-    def open(self, path: str, series: Any = None) -> None:
+    def open(self, path: str) -> None:
         """Open a path, after asking about unsaved work."""
-        if not self.may_leave():
-            return
-        self._opening = path.removeprefix("sample:") if path.startswith("sample:") else Path(path).name
-        self._bar.show_progress(f"Opening {self._opening}… ", 0.0)
-        self.loader.open(path, series)
+        if self.may_leave():
+            self._begin(Wish(path))
 
-    def _on_loaded(self, scene: Scene, scene_path: str) -> None:
-        self.scene_path = scene_path
-        self._bar.clear()
+    def _begin(self, wish: Wish) -> None:
+        self._wish = wish
+        self._bar.show_progress(f"Opening {wish.name}… ", 0.0)
+        self.loader.open(wish)
+
+    def _on_loaded(self, scene: Scene, wish: Wish) -> None:
+        self.scene_path = wish.scene_path
+        if not wish.is_sample:
+            remember(wish.path)
+        self._bar.clear("progress")
+        self._bar.clear("error")
         self._editor.reset(scene)
         self.opened.emit()
         if scene.volume is not None and scene.volume.info.notices:
@@ -102,11 +112,38 @@ class Files(QObject):
         self._bar.show_error(f"{message}.{kept}")
 
     def _ask_for_series(self, path: str, series: Any) -> None:
-        dialog = SeriesDialog(series, self._window)
-        dialog.accepted.connect(lambda: self.loader.open(path, dialog.chosen.key))
-        dialog.rejected.connect(lambda: self._bar.clear("progress"))
+        dialog = SeriesDialog(path, series, self._window)
+        dialog.accepted.connect(lambda: self._begin(Wish(path, series=dialog.chosen.key)))
+        self._ask(dialog)
+
+    def _ask_for_form(self, path: str, guesses: Any) -> None:
+        dialog = RawDialog(path, guesses, self._window)
+        dialog.accepted.connect(lambda: self._begin(Wish(path, raw=dialog.form)))
+        dialog.accepted.connect(lambda: self._keep_form(dialog))
+        self._ask(dialog)
+
+    def _ask(self, dialog: QDialog) -> None:
+        """Ask what is needed to open something; it is given up with the dialog."""
+        self._bar.clear("progress")
         dialog.finished.connect(dialog.deleteLater)
         dialog.open()
+
+    def _keep_form(self, dialog: RawDialog) -> None:
+        try:
+            dialog.keep_form()
+        except SfumatoError as error:
+            self._bar.show_error(f"The description could not be kept: {error}")
+
+    # -- a device that is too small ---------------------------------------------------------------
+    def reduce(self) -> None:
+        """Take the volume at half its resolution."""
+        self._wish = Wish("a smaller volume")
+        self.loader.reduce(self._editor.scene)
+
+    def _on_reduced(self, scene: Scene) -> None:
+        self._bar.clear("progress")
+        self._editor.change("Use a smaller volume", volume=scene.volume)
+        self.opened.emit()
 
     # -- the scene --------------------------------------------------------------------------------
     @property
@@ -128,9 +165,15 @@ class Files(QObject):
 
     def save_scene(self, wait: bool = False) -> bool:
         """Save to the scene's file, or ask for one; tells whether it was saved, if it is to wait for that."""
-        if self.scene_path:
-            return self.save_scene_as(self.scene_path)
-        start = str(Path.home() / f"{self.name or 'scene'}{SCENE_SUFFIX}")
+        if self._editor.scene.volume is None:
+            return False
+        return self.save_scene_as(self.scene_path) if self.scene_path else self.ask_to_save_scene(wait)
+
+    def ask_to_save_scene(self, wait: bool = False) -> bool:
+        """Let the user choose the scene's file; tells whether it was saved, if it is to wait for that."""
+        if self._editor.scene.volume is None:
+            return False
+        start = self.scene_path or str(Path(last_folder()) / f"{self.name or 'scene'}{SCENE_SUFFIX}")
         dialog = QFileDialog(self._window, "Save the scene", start, f"Scenes (*{SCENE_SUFFIX})")
         dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
         dialog.setDefaultSuffix(SCENE_SUFFIX[1:])
@@ -153,6 +196,7 @@ class Files(QObject):
             return False
         self.scene_path = path
         self._editor.document.mark_saved()
+        remember(path)
         self._bar.show_notice(f"Saved {path}")
         self.scene_saved.emit()
         return True

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,15 +22,56 @@ DEFAULT_SAMPLE = "sample:hand"
 SCENE_SUFFIX = ".sfumato"
 SAMPLE = "sample:"
 
+#: Work on the thread (progress, stop); what it returns is called to tell of the result.
+Task = Callable[[Any, threading.Event], Callable[[], object]]
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is to be opened, and what the user said about it.
+
+    Parameters
+    ----------
+    path : str
+        A file, a folder, or ``sample:name``.
+    series : str, optional
+        Key of the DICOM series.
+    raw : RawGuess, optional
+        How to read bare voxels.
+    """
+
+    path: str
+    series: str | None = None
+    raw: Any = None
+
+    @property
+    def name(self) -> str:
+        """What it is called in messages."""
+        return self.path.removeprefix(SAMPLE) if self.is_sample else Path(self.path).name
+
+    @property
+    def is_sample(self) -> bool:
+        """Whether it is one of the embedded samples."""
+        return self.path.startswith(SAMPLE)
+
+    @property
+    def scene_path(self) -> str:
+        """The scene file that it is, or nothing."""
+        return self.path if self.path.endswith(SCENE_SUFFIX) else ""
+
 
 class Loader(QObject):
     """Opens one thing at a time; asking for another gives up the first."""
 
     progress = Signal(float, str)
-    #: A scene is ready, and the scene file it came from or an empty text.
-    loaded = Signal(object, str)
+    #: A scene is ready (the scene, the wish).
+    loaded = Signal(object, object)
+    #: The scene with its volume at half the resolution.
+    reduced = Signal(object)
     #: A folder holds several DICOM series (path, list of series).
     several = Signal(str, object)
+    #: Bare voxels that nothing describes (path, list of guesses).
+    raw_found = Signal(str, object)
     failed = Signal(str)
     cancelled = Signal()
 
@@ -36,12 +80,19 @@ class Loader(QObject):
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
 
-    def open(self, path: str, series: Any = None) -> None:
+    def open(self, wish: Wish) -> None:
         """Begin to open a volume, a folder, a scene file or a sample."""
+        self._start(lambda progress, stop: self._open(wish, progress, stop))
+
+    def reduce(self, scene: Scene) -> None:
+        """Begin to halve the resolution of a scene's volume."""
+        self._start(lambda progress, stop: self._reduce(scene, progress, stop))
+
+    def _start(self, task: Task) -> None:
         self.cancel()
         self._stop = threading.Event()
         self._thread = threading.Thread(
-            target=self._run, args=(path, series, self._stop), name="sfumato-load", daemon=True
+            target=self._run, args=(task, self._stop), name="sfumato-load", daemon=True
         )
         self._thread.start()
 
@@ -55,55 +106,73 @@ class Loader(QObject):
         return self._thread is not None and self._thread.is_alive()
 
     # -- the thread -------------------------------------------------------------------------------
-    def _run(self, path: str, series: Any, stop: threading.Event) -> None:
+    def _run(self, task: Task, stop: threading.Event) -> None:
         def progress(fraction: float, text: str = "") -> None:
             if not stop.is_set():
                 self.progress.emit(fraction, text)
 
         try:
-            found = _several_series(path) if series is None else []
-            if len(found) > 1 and not stop.is_set():
-                self.several.emit(path, found)
-                return
-            scene = read_scene(path, series, progress, stop.is_set)
+            tell = task(progress, stop)
         except Exception as error:
             # A reader that was stopped ends with an error of its own; what counts is who asked for it.
-            if stop.is_set():
-                self._tell_cancelled(stop)
-            else:
-                self.failed.emit(one_line(error))
-            return
-        if stop.is_set():
-            self._tell_cancelled(stop)
-        else:
-            self.loaded.emit(scene, path if path.endswith(SCENE_SUFFIX) else "")
-
-    def _tell_cancelled(self, stop: threading.Event) -> None:
-        """Tell that the user gave up; not if something else is being opened instead."""
-        if stop is self._stop:
+            tell = partial(self.failed.emit, one_line(error))
+        if not stop.is_set():
+            tell()
+        elif stop is self._stop:  # given up by the user, not for something else
             self.cancelled.emit()
 
+    def _open(self, wish: Wish, progress: Any, stop: threading.Event) -> Callable[[], object]:
+        from sfumato.io import NeedsDescription, guess_raw
 
-def read_scene(path: str, series: Any = None, progress: Any = None, cancel: Any = None) -> Scene:
-    """Read a scene file, a picture that carries its scene, or a volume as a new, fitting scene.
+        found = _several_series(wish.path) if wish.series is None else []
+        if len(found) > 1:
+            return partial(self.several.emit, wish.path, found)
+        try:
+            scene = read_scene(wish, progress, stop.is_set)
+        except NeedsDescription as error:
+            return partial(self.raw_found.emit, error.path, guess_raw(error.path))
+        return partial(self.loaded.emit, scene, wish)
 
-    What is slow to compute once (content hash, histogram, range) is computed here, off the window's thread.
-    """
-    if path.endswith(SCENE_SUFFIX):
-        scene = Scene.open(path)
-    elif path.startswith(SAMPLE):
-        scene = sfumato_samples.scene(path.removeprefix(SAMPLE))
-    elif path.lower().endswith(".png"):
-        scene = open_png(path)
+    def _reduce(self, scene: Scene, progress: Any, stop: threading.Event) -> Callable[[], object]:
+        from sfumato.io import reduce_volume
+
+        assert scene.volume is not None
+        smaller = scene.with_(volume=reduce_volume(scene.volume, progress=progress, cancel=stop.is_set))
+        _prepare(smaller)
+        return partial(self.reduced.emit, smaller)
+
+
+def read_scene(wish: Wish, progress: Any = None, cancel: Any = None) -> Scene:
+    """Read a scene file, a picture that carries its scene, or a volume as a new, fitting scene."""
+    if wish.scene_path:
+        scene = Scene.open(wish.path)
+    elif wish.is_sample:
+        scene = sfumato_samples.scene(wish.path.removeprefix(SAMPLE))
+    elif wish.path.lower().endswith(".png"):
+        scene = open_png(wish.path)
     else:
-        from sfumato import load
+        scene = Scene(volume=_read_volume(wish, progress, cancel))
+    _prepare(scene)
+    return scene
 
-        options = {} if series is None else {"series": series}
-        volume: Volume = load(path, progress=progress, cancel=cancel, **options)
-        scene = Scene(volume=volume)
+
+def _read_volume(wish: Wish, progress: Any, cancel: Any) -> Volume:
+    from sfumato import load
+    from sfumato.io import load_raw
+
+    if wish.raw is not None:
+        how = wish.raw
+        return load_raw(
+            wish.path, how.dims, how.dtype, how.spacing,
+            offset=how.offset, progress=progress, cancel=cancel,
+        )  # fmt: skip
+    return load(wish.path, series=wish.series, progress=progress, cancel=cancel)
+
+
+def _prepare(scene: Scene) -> None:
+    """Compute here, off the window's thread, what is slow to compute once: content hash and histogram."""
     if scene.volume is not None:
         _ = scene.volume.key, scene.volume.histogram
-    return scene
 
 
 def _several_series(path: str) -> list[Any]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 from qtpy.QtCore import Qt, QTimer, Signal
 from qtpy.QtGui import QColor, QPalette
 from qtpy.QtWidgets import (
@@ -34,6 +36,7 @@ class MessageBar(QFrame):
         self._over = parent
         self.setObjectName("MessageBar")
         self.kind = ""
+        self._question: tuple[str, Mapping[str, Callable[[], object]]] | None = None
         self._icon = QLabel()
         self._text = QLabel()
         self._text.setWordWrap(True)
@@ -44,6 +47,7 @@ class MessageBar(QFrame):
         self._bar.setRange(0, 1000)
         self._bar.setAccessibleName("Progress")
         self._cancel = QPushButton("Cancel")
+        self._answers: list[QPushButton] = []
         self._close = QToolButton()
         self._close.setAccessibleName("Close the message")
         self._cancel.clicked.connect(self.cancelled)
@@ -59,7 +63,7 @@ class MessageBar(QFrame):
         words.setSpacing(6)
         words.addWidget(self._text)
         words.addWidget(self._bar)
-        row = QHBoxLayout(self)
+        self._row = row = QHBoxLayout(self)
         row.setContentsMargins(12, 8, 8, 8)
         row.setSpacing(10)
         row.addWidget(self._icon, 0, Qt.AlignmentFlag.AlignTop)
@@ -72,9 +76,27 @@ class MessageBar(QFrame):
         """What it says."""
         return self._text.text() if self.isVisible() else ""
 
-    def show_error(self, text: str) -> None:
-        """Say what went wrong; it stays until closed or replaced."""
-        self._show("error", text)
+    def show_error(self, text: str, answers: Mapping[str, Callable[[], object]] | None = None) -> None:
+        """Say what went wrong; it stays until closed or replaced.
+
+        Parameters
+        ----------
+        answers : mapping of str to callable, optional
+            Buttons that mend it, by their text.
+        """
+        self._show("error", text, answers)
+
+    def ask(self, text: str, answers: Mapping[str, Callable[[], object]]) -> None:
+        """Ask something that can wait: it gives way to other messages and comes back until answered.
+
+        Parameters
+        ----------
+        answers : mapping of str to callable
+            Buttons by their text.
+        """
+        self._question = text, answers
+        if not self.kind:
+            self._show("question", text, answers)
 
     def show_notice(self, text: str) -> None:
         """Say something worth knowing; it goes away by itself."""
@@ -91,20 +113,28 @@ class MessageBar(QFrame):
         """Hide the bar, if it shows this kind of message (any, if none is named)."""
         if not kind or kind == self.kind:
             self._fade.stop()
+            if self.kind == "question":
+                self._question = None
             self.kind = ""
             self.hide()
+            if self._question is not None:
+                self._show("question", *self._question)
 
     def place(self) -> None:
         """Take the width that the picture has, up to a readable line."""
         parent = self._over
         width = min(620, parent.width() - 24)
         self.setFixedWidth(max(120, width))
-        self._text.setFixedWidth(max(60, width - 60 - (90 if self.kind == "progress" else 40)))
+        buttons = [self._cancel] if self.kind == "progress" else self._answers
+        taken = sum(button.sizeHint().width() + 10 for button in buttons)
+        taken += 0 if self.kind == "progress" else 40
+        self._text.setFixedWidth(max(60, width - 60 - taken))
         self.adjustSize()
         self.move((parent.width() - self.width()) // 2, 12)
 
-    def _show(self, kind: str, text: str) -> None:
+    def _show(self, kind: str, text: str, answers: Mapping[str, Callable[[], object]] | None = None) -> None:
         self._fade.stop()
+        self._offer(answers or {})
         self.kind = kind
         self._text.setText(text)
         self._text.setAccessibleName(text)
@@ -115,6 +145,23 @@ class MessageBar(QFrame):
         self.place()
         self.show()
         self.raise_()
+
+    def _offer(self, answers: Mapping[str, Callable[[], object]]) -> None:
+        """Replace the buttons; each one closes the bar and acts."""
+        for button in self._answers:
+            button.hide()
+            self._row.removeWidget(button)
+            button.deleteLater()
+        self._answers = []
+        for text, act in answers.items():
+            button = QPushButton(text)
+            button.clicked.connect(lambda _=False, act=act: self._answer(act))
+            self._row.insertWidget(self._row.count() - 1, button, 0, Qt.AlignmentFlag.AlignVCenter)
+            self._answers.append(button)
+
+    def _answer(self, act: Callable[[], object]) -> None:
+        self.clear(self.kind)
+        act()
 
     def refresh_theme(self) -> None:
         """Take the theme's colours."""

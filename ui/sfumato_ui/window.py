@@ -66,6 +66,7 @@ class MainWindow(QMainWindow):
         self.messages = MessageBar(self.viewport)
         self.worker = RenderWorker()
         self.thumbnails = Thumbnails(self.worker, self)
+        self.material_page.use_thumbnails(self.thumbnails)
         self.driver = ViewDriver(self.editor, self.viewport, self.worker)
         self.files = Files(self, self.editor, self.viewport, self.worker, self.messages)
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
@@ -148,6 +149,7 @@ class MainWindow(QMainWindow):
             "Home": lambda: self.look(""),
             "Esc": lambda: self.strip.choose("orbit"),
             "L": lambda: self.strip.choose("light"),
+            "C": lambda: self.strip.choose("clip"),
         }.items():
             QShortcut(QKeySequence(keys), self).activated.connect(act)
         for i, view in enumerate(STANDARD_VIEWS):

@@ -11,6 +11,7 @@ axes x, y and z. Whatever a reader had to decide is told in ``volume.info.notice
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 import logging
 import os
@@ -20,6 +21,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..errors import LoadError, SfumatoError
 from ..scene import Volume
 from . import dicom, formats, raw
@@ -27,8 +30,8 @@ from .dicom_header import is_dicom
 from .dicom_series import SeriesInfo
 from .finish import finish
 from .formats import SUPPORTED
-from .raw import RawGuess
-from .reading import Cancel, LoadCancelled, Progress, Task
+from .raw import NeedsDescription, RawGuess
+from .reading import Cancel, LoadCancelled, Progress, Reading, Source, Task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,12 +39,16 @@ if TYPE_CHECKING:
 __all__ = [
     "SUPPORTED",
     "LoadCancelled",
+    "NeedsDescription",
     "RawGuess",
     "SeriesInfo",
+    "describe_raw",
     "find_series",
     "guess_raw",
     "load",
     "load_raw",
+    "preview_series",
+    "reduce_volume",
     "register_scheme",
 ]
 
@@ -132,6 +139,72 @@ def guess_raw(path: str | os.PathLike[str]) -> list[RawGuess]:
     task = Task(Path(path))
     with _guarded(task):
         return raw.guess(task.path)
+
+
+def describe_raw(path: str | os.PathLike[str], how: RawGuess) -> None:
+    """Write how to read a raw file into a JSON file beside it, which `load` heeds.
+
+    Raises
+    ------
+    LoadError
+        If the folder cannot be written.
+    """
+    task = Task(Path(path))
+    with _guarded(task):
+        raw.describe(task.path, how)
+
+
+def preview_series(
+    path: str | os.PathLike[str], show: Callable[[str, np.ndarray], object], *, cancel: Cancel | None = None
+) -> None:
+    """Hand over the middle slice of each DICOM series of a folder, one after the other, for a dialog.
+
+    Parameters
+    ----------
+    show : callable (key, slice)
+        Called in this thread; the slice in units (Hounsfield ...), shape (rows, columns). A series whose
+        pixels cannot be decoded is left out.
+    cancel : callable () -> bool, optional
+        As in `load`.
+
+    Raises
+    ------
+    LoadError
+        If the folder cannot be read.
+    LoadCancelled
+        If ``cancel`` said so.
+    """
+    task = Task(Path(path), cancel=cancel)
+    with _guarded(task):
+        for key, plane in dicom.middle_slices(task.path, task):
+            show(key, plane)
+
+
+def reduce_volume(
+    volume: Volume, *, progress: Progress | None = None, cancel: Cancel | None = None
+) -> Volume:
+    """Return a volume at half its resolution, for a device that has no room for the whole.
+
+    Raises
+    ------
+    LoadError
+        If it is too small for that, or there is not enough memory.
+    LoadCancelled
+        If ``cancel`` said so.
+    """
+    task = Task(Path(volume.info.path), level=1, progress=progress, cancel=cancel)
+    axes = np.asarray(volume.direction) * np.asarray(volume.spacing)
+    info = volume.info
+    with _guarded(task):
+        made = finish(
+            Reading(
+                Source.of(volume.data), axes, np.asarray(volume.origin), info.modality,
+                info.orientation_known, info.name, list(info.notices),
+            ),
+            task,
+        )  # fmt: skip
+        # What Path makes of "sample:hand" or an empty text is not what the volume was called.
+        return dataclasses.replace(made, info=dataclasses.replace(made.info, path=info.path))
 
 
 def load_raw(

@@ -7,11 +7,13 @@ uneven distances and gantry tilt resampled onto a straight grid. Each of these l
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ..errors import LoadError
 from .deskew import even, shift_plane
 from .dicom_header import Frame, is_dicom, read_header
 from .dicom_pixels import Decoder, to_units, unit_dtype
@@ -69,6 +71,20 @@ def read(task: Task) -> Reading:
         notices,
         begun=0.3,
     )
+
+
+def middle_slices(path: Path, task: Task) -> Iterator[tuple[str, np.ndarray]]:
+    """Yield the key and the middle frame in units of each series that can be decoded."""
+    for series in _all_series(path, task):
+        task.step(0.0, "Previews")
+        depths = series.depths()
+        order = range(len(series.frames)) if depths is None else np.argsort(depths, kind="stable")
+        frame = series.frames[int(order[len(order) // 2])]
+        try:
+            plane = to_units(Decoder(series, task).values(frame), frame, unit_dtype(series))
+        except LoadError:
+            continue
+        yield series.key, plane
 
 
 _MODALITIES = ("CT", "MR", "US", "PT", "NM", "XA", "OCT", "OPT", "MG")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import LoadError
 from .reading import Reading, Source, Task, check_claim
 
 _TYPE_NAMES = {
@@ -45,6 +46,10 @@ _SIDES = (
     1000,
     1024,
 )
+
+
+class NeedsDescription(LoadError):  # noqa: N818  (it asks for something)
+    """Bare voxels whose form nothing tells: ``load_raw`` can read them, `guess` proposes how."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +106,8 @@ def read(task: Task) -> Reading:
         raise task.error("it is empty")
     sure = [g for g in guess(task.path) if g.sure]
     if not sure:
-        raise task.error(
+        raise NeedsDescription(
+            task.path,
             "raw voxels without a description",
             "name it like head_256x256x128_uint8.raw, put an .mhd beside it, or use load_raw",
         )
@@ -132,6 +138,20 @@ def source(task: Task, how: RawGuess) -> Reading:
     return Reading(Source.of(array), np.diag([float(s) for s in how.spacing]))
 
 
+def describe(path: Path, how: RawGuess) -> Path:
+    """Write how to read a raw file beside it, as JSON, so that it opens without a question from now on.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be written.
+    """
+    beside = path.with_name(path.name + ".json")
+    about = {"dims": how.dims, "dtype": how.dtype, "spacing": how.spacing, "offset": how.offset}
+    beside.write_text(json.dumps(about) + "\n", encoding="utf-8")
+    return beside
+
+
 # -- guessing --------------------------------------------------------------------------------------
 def _from_json(path: Path, size: int) -> list[RawGuess]:
     for beside in (path.with_suffix(".json"), path.with_name(path.name + ".json")):
@@ -144,11 +164,12 @@ def _from_json(path: Path, size: int) -> list[RawGuess]:
             sx, sy, sz = (float(s) for s in about.get("spacing", (1, 1, 1)))
         except (OSError, ValueError, TypeError, KeyError, AttributeError):
             continue
-        offset = size - x * y * z * kind.itemsize
-        if min(x, y, z) > 0 and offset >= 0:
-            return [
-                RawGuess((x, y, z), _name(kind), (sx, sy, sz), offset, offset == 0, f"from {beside.name}")
-            ]
+        rest = size - x * y * z * kind.itemsize
+        told = about.get("offset")
+        offset = told if isinstance(told, int) else rest
+        if min(x, y, z) > 0 and 0 <= offset <= rest:
+            sure = isinstance(told, int) or rest == 0
+            return [RawGuess((x, y, z), _name(kind), (sx, sy, sz), offset, sure, f"from {beside.name}")]
     return []
 
 
