@@ -34,6 +34,9 @@ class ColorButton(QPushButton):
 
     #: The user picked this linear colour.
     picked = Signal(object)
+    #: The dialog opened, or was closed: what is picked in between is one step.
+    opened = Signal()
+    closed = Signal()
 
     def __init__(self, name: str) -> None:
         super().__init__()
@@ -59,8 +62,10 @@ class ColorButton(QPushButton):
         dialog.setWindowTitle(self._name)
         dialog.currentColorChanged.connect(lambda color: self.picked.emit(to_linear(color)))
         before = self._color
+        self.opened.emit()
         if not dialog.exec():
             self.picked.emit(before)
+        self.closed.emit()
         dialog.deleteLater()
 
     def paintEvent(self, event: QPaintEvent) -> None:

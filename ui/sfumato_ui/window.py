@@ -66,11 +66,11 @@ class MainWindow(QMainWindow):
         self.messages = MessageBar(self.viewport)
         self.worker = RenderWorker()
         self.thumbnails = Thumbnails(self.worker, self)
-        self.material_page.use_thumbnails(self.thumbnails)
         self.driver = ViewDriver(self.editor, self.viewport, self.worker)
         self.files = Files(self, self.editor, self.viewport, self.worker, self.messages)
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
         self.light_page, self.material_page = LightPage(self.editor), MaterialPage(self.editor)
+        self.material_page.use_thumbnails(self.thumbnails)
         self.view_page = ViewPage(self.editor)
         self._closed = False
         self._render_failed = False

@@ -1,42 +1,29 @@
-"""The Material tab: presets of the transfer function, and how dense the material is."""
+"""The Material tab: presets as pictures, density, and the transfer function point by point."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from qtpy.QtCore import QSize, Qt
-from qtpy.QtGui import QWheelEvent
-from qtpy.QtWidgets import QListWidget, QListWidgetItem
+from qtpy.QtCore import QTimer
+from qtpy.QtGui import QHideEvent, QImage, QShowEvent
 
-from sfumato import Scene, TransferFunction
+from sfumato import Scene, SfumatoError, TransferFunction
+from sfumato.scene import transfer_edit
 from sfumato.scene.presets import Preset, presets_for
 
 from ..editing import Editor
+from ..own_presets import OwnPresets
+from ..preset_bar import AskLine, PresetBar
+from ..preset_gallery import PICTURE, PresetGallery
+from ..section import Section
 from ..sliders import LabelledSlider
-from ..transfer_preview import TransferPreview, swatch
+from ..thumbnails import Thumbnails
+from ..transfer_editor import TransferEditor
 from .page import Page
 
-
-class PresetList(QListWidget):
-    """A list that the wheel scrolls, and that is as tall as its rows."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.setIconSize(QSize(44, 20))
-        self.setUniformItemSizes(True)
-        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setAccessibleName("Presets")
-
-    def fit(self) -> None:
-        """Take the height of all rows."""
-        self.setFixedHeight(
-            sum(self.sizeHintForRow(i) for i in range(self.count())) + 2 * self.frameWidth() + 4
-        )
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Let the panel scroll."""
-        event.ignore()
+#: Name of this tab's thumbnails, and the quiet time in milliseconds after which they are drawn anew.
+GROUP = "presets"
+QUIET_MS = 700
 
 
 class MaterialPage(Page):
@@ -47,88 +34,251 @@ class MaterialPage(Page):
         self._editor = editor
         self._presets: tuple[Preset, ...] = ()
         self._volume: object = None
-        self.preview = TransferPreview()
-        self.presets = PresetList()
+        self._thumbnails: Thumbnails | None = None
+        self._answer = "save"
+        self.own = OwnPresets()
+        self._untold = self.own.problems
+        self.bar, self.ask, self.presets = PresetBar(), AskLine(), PresetGallery()
+        self.transfer = TransferEditor(editor)
+        self.more = Section("More", "material_more")
+        self._quiet = QTimer(self)
+        self._quiet.setSingleShot(True)
+        self._quiet.setInterval(QUIET_MS)
+        self._make_sliders()
+        for widget in (self.bar, self.ask, self.presets, self.density, self.transfer, self.more):
+            self.add(widget)
+        self.more.add(self.level)
+        self.more.add(self.width_of_all)
+        self.finish()
+        self._connect()
+        self.refresh()
+
+    # -- building ---------------------------------------------------------------------------------
+    def _make_sliders(self) -> None:
         self.density = LabelledSlider(
             "Density", ((1 / 16, 16.0),), 1.0, unit="×", decimals=2, step=0.05, limits=(0.01, 100), log=True,
             tip="How much light each millimetre stops: thin shows what is inside, dense the surface",
         )  # fmt: skip
-        self.add_heading("Presets")
-        self.add(self.presets)
-        self.add(self.density)
-        self.add_heading("Values and opacity")
-        self.add(self.preview)
-        self.finish()
-        self.presets.currentRowChanged.connect(self._choose)
-        self.density.edited.connect(self._set_density)
-        self.density.drag_started.connect(lambda: editor.begin("Change the density"))
-        self.density.drag_finished.connect(editor.end)
-        editor.changed.connect(self._on_changed)
-        self.refresh()
+        self.level = LabelledSlider(
+            "Shift of all points", ((-100.0, 100.0),), 0.0, unit="%", decimals=1, limits=(-1000, 1000),
+            tip="Moves the whole function along the values, in parts of the volume's range",
+        )  # fmt: skip
+        self.width_of_all = LabelledSlider(
+            "Width of all points", ((0.1, 10.0),), 1.0, unit="×", decimals=2, step=0.02, limits=(0.01, 100),
+            log=True, tip="Stretches the whole function about its middle",
+        )  # fmt: skip
 
+    def _connect(self) -> None:
+        editor, ask = self._editor, self.ask
+        self.presets.chosen.connect(self._choose)
+        self.presets.rename_wanted.connect(self._ask_rename)
+        self.presets.delete_wanted.connect(self._ask_delete)
+        self.bar.save.clicked.connect(self._ask_save)
+        self.bar.rename.clicked.connect(self._ask_rename)
+        self.bar.delete.clicked.connect(self._ask_delete)
+        ask.answered.connect(self._answered)
+        ask.given_up.connect(self.presets.setFocus)
+        self.transfer.reset_wanted.connect(self._reset)
+        self._bind(self.density, "Change the density", self._set_density)
+        self._bind(self.level, "Shift the function", self._set_shift)
+        self._bind(self.width_of_all, "Widen the function", self._set_width)
+        editor.changed.connect(self._on_changed)
+        self._quiet.timeout.connect(self._want_pictures)
+
+    def _bind(self, slider: LabelledSlider, label: str, function: object) -> None:
+        """Let a slider edit the transfer function; a drag is one step."""
+
+        def edit(value: float) -> None:
+            transfer = self._editor.scene.transfer
+            if transfer is not None:
+                changed = function(transfer, value)  # type: ignore[operator]
+                self._editor.change(label, not slider.slider.isSliderDown(), transfer=changed)
+            self.refresh()
+
+        slider.edited.connect(edit)
+        slider.drag_started.connect(lambda: self._editor.begin(label))
+        slider.drag_finished.connect(self._editor.end)
+
+    def use_thumbnails(self, thumbnails: Thumbnails) -> None:
+        """Take the pictures of presets from here."""
+        self._thumbnails = thumbnails
+        thumbnails.ready.connect(self._on_thumbnail)
+
+    # -- showing ----------------------------------------------------------------------------------
     def refresh(self) -> None:
         """Show everything anew."""
         scene = self._editor.scene
         if scene.volume is not self._volume:
             self._volume = scene.volume
-            self._presets = presets_for(scene.volume) if scene.volume is not None else ()
             self._fill()
         self.setEnabled(scene.volume is not None)
-        self.preview.show_scene(scene)
-        current = self._current()
-        self.presets.blockSignals(True)
-        self.presets.setCurrentRow(-1 if current is None else current)
-        self.presets.blockSignals(False)
+        current, origin = self._current(), self._origin()
+        edited = current is None and scene.transfer is not None
+        name = origin.name if origin is not None else ""
+        self.transfer.show_scene(scene, name, edited)
+        self.presets.mark(current)
+        self.bar.show_state(
+            f"{name}, edited" if edited and name else "", self._is_own(current), scene.transfer is not None
+        )
         self.density.set_number(self._density())
+        shift, width = self._shift_and_width()
+        self.level.set_number(shift)
+        self.width_of_all.set_number(width)
 
     def _fill(self) -> None:
-        self.presets.blockSignals(True)
-        self.presets.clear()
-        for preset in self._presets:
-            item = QListWidgetItem(swatch(preset.transfer), preset.name)
-            item.setToolTip(preset.description)
-            self.presets.addItem(item)
-        self.presets.fit()
-        self.presets.blockSignals(False)
+        volume = self._editor.scene.volume
+        built_in = presets_for(volume) if volume is not None else ()
+        self._presets = (*built_in, *self.own.presets)
+        self.presets.fill(self._presets)
+        self._quiet.start()
 
     def _on_changed(self, old: Scene, new: Scene) -> None:
         if old.volume is not new.volume or old.transfer != new.transfer:
             self.refresh()
+        self._quiet.start()
 
+    def _want_pictures(self) -> None:
+        """Ask for the presets' pictures, in the light and from the side that the scene has now."""
+        scene = self._editor.scene
+        if self._thumbnails is None or scene.volume is None or not self.isVisible():
+            return
+        ratio = self.devicePixelRatioF()
+        size = round(PICTURE[0] * ratio), round(PICTURE[1] * ratio)
+        bare = scene.with_(background=(0.0, 0.0, 0.0, 0.0))
+        wanted = {row: bare.with_(transfer=p.transfer) for row, p in enumerate(self._presets)}
+        self._thumbnails.want(GROUP, wanted, size)
+
+    def _on_thumbnail(self, group: str, key: object, image: QImage) -> None:
+        if group == GROUP and isinstance(key, int):
+            self.presets.show_picture(key, image)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Want pictures only while the tab is in front; tell once what could not be read."""
+        super().showEvent(event)
+        self._quiet.start()
+        for problem in self._untold:
+            self._editor.rejected.emit(problem)
+        self._untold = ()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        """Want no more pictures."""
+        super().hideEvent(event)
+        self._quiet.stop()
+        if self._thumbnails is not None:
+            self._thumbnails.forget(GROUP)
+
+    # -- which preset -----------------------------------------------------------------------------
     def _current(self) -> int | None:
         """Return which preset the scene's function is, whatever its density."""
         transfer = self._editor.scene.transfer
-        for i, preset in enumerate(self._presets):
-            if transfer is not None and (preset.transfer.points, preset.transfer.regions) == (
-                transfer.points,
-                transfer.regions,
-            ):
-                return i
-        return None
-
-    def _base(self, transfer: TransferFunction) -> float:
-        """Return the unit distance in mm that counts as density 1."""
-        volume, current = self._editor.scene.volume, self._current()
-        assert volume is not None
-        preset = self._presets[current].transfer if current is not None else None
-        return (preset.unit_distance if preset is not None else None) or volume.unit_distance
-
-    def _density(self) -> float:
-        transfer = self._editor.scene.transfer
         if transfer is None:
-            return 1.0
-        base = self._base(transfer)
-        return base / (transfer.unit_distance or base)
+            return None
+        alike = [
+            i
+            for i, p in enumerate(self._presets)
+            if (p.transfer.points, p.transfer.regions) == (transfer.points, transfer.regions)
+        ]
+        return next((i for i in alike if self._presets[i].name == transfer.name), alike[0] if alike else None)
+
+    def _origin(self) -> Preset | None:
+        """Return the preset that the scene's function is, or was made from."""
+        current, transfer = self._current(), self._editor.scene.transfer
+        if current is not None:
+            return self._presets[current]
+        name = transfer.name if transfer is not None else ""
+        return next((p for p in self._presets if name and p.name == name), None)
+
+    def _is_own(self, row: int | None) -> bool:
+        return row is not None and row >= len(self._presets) - len(self.own.presets)
 
     def _choose(self, row: int) -> None:
         if 0 <= row < len(self._presets):
-            self._editor.change("Choose the preset", True, transfer=self._presets[row].transfer)
-
-    def _set_density(self, density: float) -> None:
-        transfer = self._editor.scene.transfer
-        if transfer is not None:
-            thinner = replace(transfer, unit_distance=self._base(transfer) / density)
+            preset = self._presets[row]
             self._editor.change(
-                "Change the density", not self.density.slider.isSliderDown(), transfer=thinner
+                "Choose the preset", True, transfer=replace(preset.transfer, name=preset.name)
             )
+
+    def _reset(self) -> None:
+        origin = self._origin() or (self._presets[0] if self._presets else None)
+        if origin is not None:
+            self._editor.change("Reset the function", transfer=replace(origin.transfer, name=origin.name))
+
+    # -- density, shift, width --------------------------------------------------------------------
+    def _base(self) -> float:
+        """Return the unit distance in mm that counts as density 1."""
+        volume, origin = self._editor.scene.volume, self._origin()
+        assert volume is not None
+        return (origin.transfer.unit_distance if origin is not None else None) or volume.unit_distance
+
+    def _density(self) -> float:
+        transfer = self._editor.scene.transfer
+        return self._base() / (transfer.unit_distance or self._base()) if transfer is not None else 1.0
+
+    def _set_density(self, transfer: TransferFunction, density: float) -> TransferFunction:
+        return replace(transfer, unit_distance=self._base() / density)
+
+    def _span(self) -> float:
+        """Return one per cent of the volume's values."""
+        volume = self._editor.scene.volume
+        low, high = volume.value_range if volume is not None else (0.0, 1.0)
+        return (high - low) / 100 or 0.01
+
+    def _shift_and_width(self) -> tuple[float, float]:
+        """Return how far the function lies from its preset in per cent, and how much wider it is."""
+        transfer, origin = self._editor.scene.transfer, self._origin()
+        if transfer is None or origin is None:
+            return 0.0, 1.0
+        level, width = transfer_edit.level_and_width(transfer)
+        first, first_width = transfer_edit.level_and_width(origin.transfer)
+        ratio = width / first_width if first_width > 0 and width > 0 else 1.0
+        return (level - first) / self._span(), ratio
+
+    def _set_shift(self, transfer: TransferFunction, percent: float) -> TransferFunction:
+        return transfer.rescaled(1.0, (percent - self._shift_and_width()[0]) * self._span())
+
+    def _set_width(self, transfer: TransferFunction, ratio: float) -> TransferFunction:
+        level = transfer_edit.level_and_width(transfer)[0]
+        return transfer_edit.scaled_about(transfer, level, ratio / self._shift_and_width()[1])
+
+    # -- own presets ------------------------------------------------------------------------------
+    def _ask_save(self) -> None:
+        self._answer = "save"
+        self.ask.ask_name("Save", "", self.own.complaint)
+
+    def _ask_rename(self) -> None:
+        row = self._current()
+        if self._is_own(row):
+            assert row is not None
+            old = self._presets[row].name
+            self._answer = "rename"
+            self.ask.ask_name(
+                "Rename",
+                old,
+                lambda new: "" if new.strip().lower() == old.lower() else self.own.complaint(new),
+            )
+
+    def _ask_delete(self) -> None:
+        row = self._current()
+        if self._is_own(row):
+            assert row is not None
+            self._answer = "delete"
+            self.ask.ask_yes("Delete", f"Delete the preset {self._presets[row].name}? Its file goes, too.")
+
+    def _answered(self, name: str) -> None:
+        transfer, row = self._editor.scene.transfer, self._current()
+        try:
+            if self._answer == "save" and transfer is not None:
+                self.own.save(name, transfer)
+            elif row is not None and self._answer == "rename":
+                self.own.rename(self._presets[row].name, name)
+            elif row is not None and self._answer == "delete":
+                self.own.delete(self._presets[row].name)
+        except SfumatoError as error:
+            self._editor.rejected.emit(str(error))
+            return
+        self._fill()
+        if self._answer != "delete" and transfer is not None:
+            # The scene's function is called as its preset is, so that what is made of it knows where it is from.
+            self._editor.change("Name the preset", True, transfer=replace(transfer, name=name))
         self.refresh()
+        self.presets.setFocus()

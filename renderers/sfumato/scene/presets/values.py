@@ -47,6 +47,7 @@ def is_slab(volume: Volume) -> bool:
     return thin < THIN * other
 
 
+@remembered
 def hounsfield_zero(volume: Volume) -> float | None:
     """Return the stored value that means 0 HU, or None if the values are no Hounsfield units.
 

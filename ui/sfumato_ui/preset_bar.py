@@ -1,0 +1,145 @@
+"""The presets' heading with its buttons, and the line below in which names are asked and deletion confirmed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtGui import QKeyEvent
+from qtpy.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QPushButton, QToolButton, QVBoxLayout, QWidget
+
+from .icons import icon
+from .theme import current_theme
+
+
+class AskLine(QWidget):
+    """Asks for a name, or a yes, in place; Enter agrees, Esc gives up."""
+
+    #: The user answered (the text, empty for a yes), or gave up.
+    answered = Signal(str)
+    given_up = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._complaint: Callable[[str], str] = lambda text: ""
+        self._text = QLineEdit()
+        self._question = QLabel()
+        self._question.setWordWrap(True)
+        self.accept, self.cancel = QPushButton("Save"), QPushButton("Cancel")
+        row = QHBoxLayout()
+        row.setSpacing(6)
+        row.addWidget(self._text, 1)
+        row.addWidget(self.accept)
+        row.addWidget(self.cancel)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(4)
+        column.addWidget(self._question)
+        column.addLayout(row)
+        self._row = row
+        self._text.textChanged.connect(self._judge)
+        self._text.returnPressed.connect(self._agree)
+        self.accept.clicked.connect(self._agree)
+        self.cancel.clicked.connect(self._give_up)
+        self.hide()
+
+    @property
+    def text(self) -> QLineEdit:
+        """The field in which the name is typed."""
+        return self._text
+
+    def ask_name(self, verb: str, name: str, complaint: Callable[[str], str]) -> None:
+        """Ask for a name; `complaint` says what is wrong with one."""
+        self._complaint = complaint
+        self._text.setAccessibleName("Name of the preset")
+        self._text.setPlaceholderText("Name")
+        self._text.setText(name)
+        self._text.selectAll()
+        self._open(verb, "", True)
+        self._judge(name)
+        self._text.setFocus()
+
+    def ask_yes(self, verb: str, question: str) -> None:
+        """Ask whether to go on."""
+        self._complaint = lambda text: ""
+        self._text.clear()
+        self._open(verb, question, False)
+        self.accept.setEnabled(True)
+        self.accept.setFocus()
+
+    def _open(self, verb: str, question: str, named: bool) -> None:
+        self.accept.setText(verb)
+        self._question.setText(question)
+        self._question.setVisible(bool(question))
+        self._text.setVisible(named)
+        self.show()
+
+    def _judge(self, text: str) -> None:
+        """Say at once what is wrong with the name; an empty one is only not accepted yet."""
+        complaint = self._complaint(text)
+        self.accept.setEnabled(not complaint)
+        told = complaint if text.strip() else ""
+        self._question.setText(told)
+        self._question.setVisible(bool(told))
+
+    def _agree(self) -> None:
+        if self.accept.isEnabled():
+            self.hide()
+            self.answered.emit(self._text.text().strip())
+
+    def _give_up(self) -> None:
+        self.hide()
+        self.given_up.emit()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Esc gives up, Enter agrees."""
+        if event.key() == Qt.Key.Key_Escape:
+            self._give_up()
+        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.accept.hasFocus():
+            self._agree()
+        else:
+            super().keyPressEvent(event)
+
+
+class PresetBar(QWidget):
+    """Heading, what the scene's function is called, and the buttons for own presets."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.origin = QLabel()
+        self.origin.setProperty("muted", True)
+        self.save = _button("Save as an own preset")
+        self.rename = _button("Rename the own preset (F2)")
+        self.delete = _button("Delete the own preset (Del)")
+        heading = QLabel("Presets")
+        heading.setProperty("heading", True)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(4)
+        row.addWidget(heading)
+        row.addWidget(self.origin, 1)
+        for button in (self.save, self.rename, self.delete):
+            row.addWidget(button)
+        self.refresh_theme()
+
+    def show_state(self, edited: str, own: bool, savable: bool) -> None:
+        """Show whose edited form the function is, if one's, and what can be done."""
+        self.origin.setText(edited)
+        self.save.setEnabled(savable)
+        why = "" if own else ": only own presets can be, select one"
+        for button, word in ((self.rename, "Rename"), (self.delete, "Delete")):
+            button.setEnabled(own)
+            button.setToolTip(f"{word} the own preset{why}")
+
+    def refresh_theme(self) -> None:
+        """Take the theme's icon colours."""
+        for button, name in ((self.save, "add"), (self.rename, "rename"), (self.delete, "remove")):
+            button.setIcon(icon(name, current_theme()))
+
+
+def _button(name: str) -> QToolButton:
+    button = QToolButton()
+    button.setAccessibleName(name)
+    button.setToolTip(name)
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button
