@@ -90,6 +90,17 @@ def zoom(camera: Camera, factor: float, x: float = 0.0, y: float = 0.0, size: fl
     return pan(closer, x * (1 - factor), y * (1 - factor))
 
 
+def centred(camera: Camera, point: tuple[float, float, float]) -> Camera:
+    """Return the camera moved sideways and along the view so that it looks at, and turns about, a point."""
+    shift = np.subtract(point, camera.focal_point)
+    return replace(
+        camera,
+        position=_vec(np.asarray(camera.position) + shift),
+        focal_point=_vec(np.asarray(point)),
+        window_center=(0.0, 0.0),
+    )
+
+
 def picture_half_height(camera: Camera) -> float:
     """Return half the height in mm of what the picture shows in the focal plane."""
     if camera.parallel_projection:

@@ -1,16 +1,13 @@
-"""What is drawn over the picture: the patient's sides, the hint, the lamp while it moves."""
+"""What is drawn over the picture whatever the tool: the patient's sides and the hint."""
 
 from __future__ import annotations
 
-from qtpy.QtCore import QPointF, QRect, QRectF, Qt
-from qtpy.QtGui import QColor, QPainter, QPen
+from qtpy.QtCore import QRect, QRectF, Qt
+from qtpy.QtGui import QColor, QPainter
 
-from sfumato import Light
-
-from . import light_moves
-
-#: Radius of the hemisphere on which Shift-drag moves the lamp, in picture heights.
-LIGHT_RADIUS = 0.4
+#: Radius of the hemisphere on which lamps are moved, in the shorter side of the picture; with the ring
+#: around it for lamps from behind it fills the picture.
+LIGHT_RADIUS = 0.36
 _INK = QColor(255, 255, 255)
 _SHADE = QColor(20, 20, 20, 200)
 
@@ -54,23 +51,3 @@ def draw_hint(painter: QPainter, area: QRect, text: str) -> None:
     width, height = metrics.horizontalAdvance(text) + 28, metrics.height() + 14
     top = area.bottom() - height - metrics.height() - 24
     draw_text(painter, QRectF(area.center().x() - width / 2, top, width, height), text)
-
-
-def draw_light_guide(painter: QPainter, area: QRect, light: Light) -> None:
-    """Show the hemisphere and the lamp on it while the lamp is dragged in the picture."""
-    radius = LIGHT_RADIUS * area.height()
-    centre = QPointF(area.width() / 2, area.height() / 2)
-    x, y = light_moves.to_disc(light.tilt, light.rotation)
-    lamp = QPointF(centre.x() + x * radius, centre.y() - y * radius)
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-    for colour, width in ((QColor(0, 0, 0, 160), 3.0), (QColor(255, 255, 255, 190), 1.0)):
-        painter.setPen(QPen(colour, width))
-        painter.drawEllipse(centre, radius, radius)
-        painter.drawLine(centre, lamp)
-    painter.setPen(QPen(QColor("#1b1b1b"), 2))
-    painter.setBrush(QColor("#f2b34c"))
-    painter.drawEllipse(lamp, 9.0, 9.0)
-    words = f"tilt {light.tilt:.0f}°   rotation {light.rotation % 360:.0f}°"
-    metrics = painter.fontMetrics()
-    wide, tall = metrics.horizontalAdvance(words) + 20, metrics.height() + 8
-    draw_text(painter, QRectF(lamp.x() - wide / 2, lamp.y() + 16, wide, tall), words)

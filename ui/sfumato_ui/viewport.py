@@ -1,8 +1,10 @@
 """The picture: paints the newest one and turns the hand's moves into edits of camera and lamp.
 
-Left drag orbits; with Shift it moves the selected lamp, with Ctrl or Alt (or the middle button) it pans,
-with Ctrl and Shift (or the right button) it zooms. The wheel zooms about the cursor. Arrow keys orbit by
-5 degrees, + and - zoom.
+Left drag does what the tool says: Orbit turns the subject, Light moves lamps, Clip takes the handles of
+crop box and clip planes and turns the subject beside them. In every tool Shift-drag moves the selected
+lamp, Ctrl or Alt (or the middle button) pans, Ctrl and Shift (or the right button) zooms, a double-click
+re-centres on the surface under the cursor, the wheel zooms about it. Arrow keys do what a drag would, by
+5 degrees or one step of the handle; with Ctrl they pan; + and - zoom; page keys go to the next handle.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import (
     QColor,
     QKeyEvent,
@@ -25,11 +27,15 @@ from qtpy.QtGui import (
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from sfumato import Camera
+from sfumato.scene.picking import surface_under
 
-from . import camera_moves, light_moves, overlay
+from . import camera_moves, overlay
+from .clip_planes import ClipPlanes
 from .dial import MOVE
 from .editing import Editor
 from .theme import PICTURE_GREY, current_theme
+from .tools import ClipTool, HandleTool, LightTool, PictureView
+from .tools import light as light_tool
 from .worker import Picture
 
 _MODIFIER = Qt.KeyboardModifier
@@ -37,6 +43,8 @@ LABELS = {"orbit": "Orbit", "pan": "Pan", "zoom": "Zoom", "light": MOVE}
 #: Degrees that a drag across the picture's height turns the subject.
 DEGREES_ACROSS = 220.0
 ARROW_DEGREES = 5.0
+#: Part of the picture's height that an arrow key with Ctrl pans.
+ARROW_PAN = 0.05
 ZOOM_STEP = 1.12
 
 
@@ -54,7 +62,10 @@ class Viewport(QWidget):
         self._picture: Picture | None = None
         self._mode = ""
         self._last = QPointF()
-        self.tool = "orbit"
+        self._tool = "orbit"
+        self.clips = ClipPlanes(editor)
+        #: The tools that have handles.
+        self.tools: dict[str, HandleTool] = {"light": LightTool(editor), "clip": ClipTool(editor, self.clips)}
         self.hint = ""
         self.empty_text = "Drop a volume or a folder here, or press Ctrl+O"
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -63,12 +74,51 @@ class Viewport(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setAccessibleName("Picture")
         self.setAccessibleDescription(
-            "Drag to orbit, Shift-drag to move the light, wheel to zoom, arrow keys to orbit"
+            "Drag to orbit, Shift-drag to move the light, wheel to zoom, double-click to centre, "
+            "arrow keys to orbit"
         )
+        self.setMouseTracking(True)
+        self.setCursor(Qt.CursorShape.OpenHandCursor)
+        self.clips.selected_changed.connect(self.update)
+        editor.light_selected.connect(lambda index: self.update())
+        editor.changed.connect(lambda old, new: self.update())
 
     def sizeHint(self) -> QSize:
         """Take what is there."""
         return QSize(916, 640)
+
+    # -- the tool ---------------------------------------------------------------------------------
+    @property
+    def tool(self) -> str:
+        """The active tool: ``orbit``, ``light`` or ``clip``."""
+        return self._tool
+
+    @tool.setter
+    def tool(self, name: str) -> None:
+        for tool in self.tools.values():
+            tool.leave()
+        self._tool = name
+        self._hover(None)
+        self.update()
+
+    @property
+    def view(self) -> PictureView | None:
+        """From world to picture and back, for the current camera; None if nothing is open."""
+        scene = self._editor.scene
+        if scene.camera is None or scene.volume is None:
+            return None
+        return PictureView(scene.camera, self.width(), self.height())
+
+    def _hover(self, at: QPointF | None) -> None:
+        """Show by the cursor what is under it."""
+        tool, view = self.tools.get(self._tool), self.view
+        shape = Qt.CursorShape.OpenHandCursor
+        if tool is not None and view is not None:
+            before = tool.hovered
+            shape = tool.hover(view, (at.x(), at.y()) if at is not None else None)
+            if tool.hovered != before:
+                self.update()
+        self.setCursor(shape)
 
     # -- what is shown ----------------------------------------------------------------------------
     @property
@@ -108,14 +158,24 @@ class Viewport(QWidget):
             overlay.draw_letters(
                 painter, self.rect(), camera_moves.edge_letters(scene.camera) if known else None
             )
-        if self._mode == "light" and self._editor.light is not None:
-            overlay.draw_light_guide(painter, self.rect(), self._editor.light)
+        self._paint_tool(painter)
         if self.hint and scene.volume is not None:
             overlay.draw_hint(painter, self.rect(), self.hint)
         if self.hasFocus():
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.setPen(QPen(QColor(current_theme().accent), 2))
             painter.drawRect(self.rect().adjusted(1, 1, -1, -1))
+
+    def _paint_tool(self, painter: QPainter) -> None:
+        """Paint the tool's handles; while the lamp moves with another tool, its guide alone."""
+        view, light = self.view, self._editor.light
+        tool = self.tools.get(self._tool)
+        if view is None:
+            return
+        if self._mode == "light" and self._tool != "light" and light is not None:
+            light_tool.paint_one(painter, view, self._editor.scene, light)
+        elif tool is not None:
+            tool.paint(painter, view)
 
     def _target(self, picture: Picture) -> QRectF:
         """Return where to paint: a picture of another size keeps its height, as the camera's opening does."""
@@ -134,6 +194,12 @@ class Viewport(QWidget):
         super().showEvent(event)
         self.resized.emit()
 
+    def event(self, event: QEvent) -> bool:
+        """Ask for another picture on a screen with another pixel ratio."""
+        if event.type() == QEvent.Type.DevicePixelRatioChange:
+            self.resized.emit()
+        return super().event(event)
+
     # -- mouse ------------------------------------------------------------------------------------
     def _mode_for(self, event: QMouseEvent) -> str:
         button, keys = event.button(), event.modifiers()
@@ -147,7 +213,9 @@ class Viewport(QWidget):
             return ""
         if pan:
             return "zoom" if shift else "pan"
-        return "light" if shift or self.tool == "light" else "orbit"
+        if shift:
+            return "light"
+        return "handle" if self._tool in self.tools else "orbit"
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Begin a drag."""
@@ -155,20 +223,53 @@ class Viewport(QWidget):
             return
         self._mode = self._mode_for(event)
         self._last = event.position()
+        label = LABELS.get(self._mode, "")
+        if self._mode == "handle":
+            label = self._take_handle(event.position())
         if self._mode:
-            self._editor.begin(LABELS[self._mode])
+            self._editor.begin(label)
+            if self._mode == "orbit":
+                self.setCursor(Qt.CursorShape.ClosedHandCursor)
             self.update()
+
+    def _take_handle(self, at: QPointF) -> str:
+        """Take the handle under the pointer, or what the tool does beside its handles; returns its name."""
+        tool, view = self.tools[self._tool], self.view
+        label = tool.press(view, (at.x(), at.y())) if view is not None else ""
+        if not label:
+            self._mode = "light" if self._tool == "light" else "orbit"
+        return label or LABELS[self._mode]
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Re-centre on the surface under the cursor; on a handle, a double-click is a click."""
+        tool, view, at = self.tools.get(self._tool), self.view, event.position()
+        plain = event.button() == Qt.MouseButton.LeftButton and not event.modifiers()
+        on_handle = tool is not None and view is not None and tool.hit(view, (at.x(), at.y())) is not None
+        if not plain or view is None or on_handle:
+            self.mousePressEvent(event)
+            return
+        point = surface_under(
+            self._editor.scene, *view.fractions((at.x(), at.y())), self.width() / self.height()
+        )
+        if point is not None:
+            self._editor.change("Centre the picture", camera=camera_moves.centred(view.camera, point))
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Follow the pointer."""
         if not self._mode:
+            self._hover(event.position())
             return
         delta = event.position() - self._last
         self._last = event.position()
         dx, dy = delta.x() / self.height(), -delta.y() / self.height()
         camera = self._editor.scene.camera
+        view, at = self.view, event.position()
         if self._mode == "light":
             self._move_light(dx, dy)
+        elif self._mode == "handle" and view is not None:
+            self.tools[self._tool].drag(view, (at.x(), at.y()))
+            if self._tool == "light":
+                self.lamp_moved.emit()
         elif camera is None:
             return
         elif self._mode == "orbit":
@@ -183,7 +284,15 @@ class Viewport(QWidget):
         if self._mode and not event.buttons():
             self._mode = ""
             self._editor.end()
+            for tool in self.tools.values():
+                tool.release()
+            self._hover(event.position())
             self.update()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """Mark no handle any more."""
+        self._hover(None)
+        super().leaveEvent(event)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom about the cursor."""
@@ -197,7 +306,7 @@ class Viewport(QWidget):
 
     # -- keys -------------------------------------------------------------------------------------
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Orbit by arrow keys (move the lamp with Shift), zoom by + and -."""
+        """Do by arrow keys what a drag would, zoom by + and -, go through the handles by the page keys."""
         camera, key = self._editor.scene.camera, Qt.Key(event.key())
         turn = {
             Qt.Key.Key_Left: (-1, 0),
@@ -210,7 +319,16 @@ class Viewport(QWidget):
             Qt.Key.Key_Equal: ZOOM_STEP,
             Qt.Key.Key_Minus: 1 / ZOOM_STEP,
         }.get(key)
-        if camera is not None and turn and event.modifiers() & _MODIFIER.ShiftModifier:
+        page = {Qt.Key.Key_PageDown: 1, Qt.Key.Key_PageUp: -1}.get(key)
+        tool, view = self.tools.get(self._tool), self.view
+        if tool is not None and view is not None and page:
+            tool.focus_next(view, page)
+            self.update()
+        elif camera is not None and turn and event.modifiers() & _MODIFIER.ControlModifier:
+            self._set_camera(camera_moves.pan(camera, ARROW_PAN * turn[0], ARROW_PAN * turn[1]), "pan")
+        elif tool is not None and view is not None and turn and tool.nudge(view, *turn, self._shift(event)):
+            self.update()
+        elif camera is not None and turn and self._shift(event):
             self._move_light(0.02 * turn[0], 0.02 * turn[1])
         elif camera is not None and turn:
             self._set_camera(
@@ -221,16 +339,21 @@ class Viewport(QWidget):
         else:
             event.ignore()
 
+    @staticmethod
+    def _shift(event: QKeyEvent) -> bool:
+        return bool(event.modifiers() & _MODIFIER.ShiftModifier)
+
     # -- edits ------------------------------------------------------------------------------------
     def _set_camera(self, camera: Camera, mode: str) -> None:
         self._editor.change(LABELS[mode], True, camera=camera)
 
     def _move_light(self, dx: float, dy: float) -> None:
-        """Move the lamp over a hemisphere as wide as 0.8 of the picture's height."""
-        light = self._editor.light
-        if light is not None:
-            radius = overlay.LIGHT_RADIUS
-            self._editor.change_light(MOVE, True, **light_moves.moved(light, dx / radius, dy / radius))
+        """Move the selected lamp over the hemisphere by (dx, dy) picture heights, y up."""
+        light, view = self._editor.light, self.view
+        if light is not None and view is not None:
+            grow = self.height() / light_tool.radius_of(view)
+            fields = light_tool.moved(self._editor.scene, light, grow * dx, grow * dy)
+            self._editor.change_light(MOVE, True, **fields)
             self.lamp_moved.emit()
 
     def _subject_size(self) -> float:

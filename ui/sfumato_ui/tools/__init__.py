@@ -1,0 +1,16 @@
+"""The tools of the picture: exactly one is active, and shows its own handles alone.
+
+- `handles`: what a handle is, how it is hit, drawn, focused.
+- `view`: from world to picture and back.
+- `light`: every lamp on a hemisphere before the picture.
+- `clip`: the crop box's faces (`crop`) and the clip planes (`planes`).
+
+The Orbit tool has no handles; `viewport` turns the camera itself.
+"""
+
+from .clip import ClipTool
+from .handles import HandleTool
+from .light import LightTool
+from .view import PictureView
+
+__all__ = ["ClipTool", "HandleTool", "LightTool", "PictureView"]
