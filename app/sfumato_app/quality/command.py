@@ -17,6 +17,7 @@ from ..bench.machine import describe
 from ..errors import UsageError
 from .contestants import Contestant, contestants
 from .measure import Result, measured
+from .page import write
 from .report import Report
 from .trials import TRIALS, Trial
 from .truth import DIRECTIONS, default_folder, truth
@@ -51,6 +52,13 @@ def _command(
     directions: Annotated[int, Parameter(help="Of the truth, in each cone.")] = DIRECTIONS,
     cache: Annotated[Path | None, Parameter(help="Folder in which truths are kept.")] = None,
     json_: Annotated[Path | None, Parameter(name="--json", help="Write all numbers.")] = None,
+    output: Annotated[
+        Path | None,
+        Parameter(
+            name=["--output", "-o"],
+            help="Folder of pictures, plot and numbers, as docs/accuracy; the page lies beside it.",
+        ),
+    ] = None,
 ) -> int:
     if not (16 <= side <= 1024 and 1 <= directions <= 4096):
         raise UsageError("--side 16 to 1024 and --directions 1 to 4096 are possible")
@@ -66,6 +74,14 @@ def _command(
     report.show(_console())
     if json_ is not None:
         _write(json_, json.dumps(report.to_json(), indent=1) + "\n")
+    if output is not None:
+        given = {"--scenes": scenes, "--techniques": techniques, "--frames": frames, "--quality": quality}
+        words = [f"{name} {value}" for name, value in given.items() if value]
+        print(
+            write(
+                report, output, " ".join(["sfumato quality", *words, *["--slices"] * slices, f"-o {output}"])
+            )
+        )
     return 0
 
 
