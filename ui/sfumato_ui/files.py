@@ -11,6 +11,7 @@ from qtpy.QtWidgets import QDialog, QFileDialog, QWidget
 from sfumato import Scene, SfumatoError
 from sfumato.export.png import write_png
 
+from .autosave import Slot
 from .dialogs import PictureDialog, ask_about_unsaved
 from .editing import Editor
 from .loading import SCENE_SUFFIX, Loader, Wish
@@ -33,6 +34,8 @@ class Files(QObject):
 
     #: Another scene is open.
     opened = Signal()
+    #: What a crash left behind is open (its slot).
+    recovered = Signal(object)
     #: The scene was saved.
     scene_saved = Signal()
 
@@ -97,17 +100,33 @@ class Files(QObject):
         self.loader.open(wish)
 
     def _on_loaded(self, scene: Scene, wish: Wish) -> None:
-        self.scene_path = wish.scene_path
-        if not wish.is_sample:
+        self.scene_path = wish.slot.about().scene_path if wish.slot else wish.scene_path
+        if not (wish.is_sample or wish.slot):
             remember(wish.path)
         self._bar.clear("progress")
         self._bar.clear("error")
         self._editor.reset(scene)
+        if wish.slot:
+            self._editor.document.mark_unsaved()
+            self.recovered.emit(wish.slot)
         self.opened.emit()
         if scene.volume is not None and scene.volume.info.notices:
             self._bar.show_notice("\n".join(scene.volume.info.notices))
 
+    def recover(self, slot: Slot) -> bool:
+        """Open what a crash left behind, after asking about unsaved work; tells whether that was allowed."""
+        if not self.may_leave():
+            return False
+        self._begin(Wish(str(slot.scene_file), slot=slot))
+        return True
+
+    def identify(self) -> tuple[str, str]:
+        """Return the scene's file, or nothing, and its name."""
+        return self.scene_path, self.name
+
     def _on_failed(self, message: str) -> None:
+        if self._wish.slot:  # it is offered again at the next start
+            self._wish.slot.release()
         kept = " What was open stays open." if self._editor.scene.volume is not None else ""
         self._bar.show_error(f"{message}.{kept}")
 

@@ -38,15 +38,20 @@ class Wish:
         Key of the DICOM series.
     raw : RawGuess, optional
         How to read bare voxels.
+    slot : Slot, optional
+        The autosaved scene that `path` is.
     """
 
     path: str
     series: str | None = None
     raw: Any = None
+    slot: Any = None
 
     @property
     def name(self) -> str:
         """What it is called in messages."""
+        if self.slot:
+            return "the recovered scene"
         return self.path.removeprefix(SAMPLE) if self.is_sample else Path(self.path).name
 
     @property

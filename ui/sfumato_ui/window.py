@@ -26,6 +26,7 @@ from sfumato.scene import STANDARD_VIEWS
 from sfumato.scene.presets import suggest_view
 
 from . import camera_moves
+from .autosave import Autosave
 from .bars import ToolStrip, TopBar
 from .driver import ViewDriver
 from .editing import Editor
@@ -35,6 +36,7 @@ from .messages import MessageBar
 from .panels.light import LightPage
 from .panels.material import MaterialPage
 from .panels.view import ViewPage
+from .recovery import Recovery
 from .settings import settings
 from .status import StatusLine
 from .tab_order import set_tab_order
@@ -71,7 +73,9 @@ class MainWindow(QMainWindow):
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
         self.light_page, self.material_page = LightPage(self.editor), MaterialPage(self.editor)
         self.material_page.use_thumbnails(self.thumbnails)
-        self.view_page = ViewPage(self.editor)
+        self.view_page = ViewPage(self.editor, self.viewport.clips)
+        self.autosave = Autosave(self.editor, self.files.identify, self)
+        self.recovery = Recovery(self.messages, self.files.recover)
         self._closed = False
         self._render_failed = False
         self._lay_out()
@@ -80,6 +84,7 @@ class MainWindow(QMainWindow):
         self._restore()
         self._show_document()
         self.worker.start()
+        self.recovery.offer()
 
     # -- building ---------------------------------------------------------------------------------
     def _lay_out(self) -> None:
@@ -123,6 +128,8 @@ class MainWindow(QMainWindow):
         self.strip.fit.clicked.connect(lambda: self.look(""))
         self.view_page.view_chosen.connect(self.look)
         self.view_page.theme_chosen.connect(self.set_theme)
+        self.view_page.frames_chosen.connect(self.driver.set_frames)
+        self.viewport.clips.added.connect(lambda: self.strip.choose("clip"))
         self.light_page.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
         self.viewport.lamp_moved.connect(self._hint_done)
         self.viewport.resized.connect(self.messages.place)
@@ -135,6 +142,11 @@ class MainWindow(QMainWindow):
         worker.failed.connect(self._on_render_failed)
         self.files.opened.connect(self._show_document)
         self.files.scene_saved.connect(self._show_title)
+        self.files.scene_saved.connect(self.autosave.watch)
+        self.files.recovered.connect(self.autosave.adopt)
+        self.autosave.failed.connect(
+            lambda why: self.messages.show_notice(f"The scene could not be autosaved: {why}")
+        )
 
     def _add_shortcuts(self) -> None:
         for keys, act in {
@@ -160,6 +172,8 @@ class MainWindow(QMainWindow):
         geometry = kept.value("window/geometry")
         if geometry is None or not self.restoreGeometry(geometry):
             self.resize(1280, 720)
+        self.panel.setCurrentIndex(kept.value("panel/tab", 0, type=int))
+        self.panel.currentChanged.connect(lambda tab: settings().setValue("panel/tab", tab))
         if not kept.value("hint/light_seen", False, type=bool):
             self.viewport.set_hint(HINT)
 
@@ -280,6 +294,8 @@ class MainWindow(QMainWindow):
         settings().setValue("window/geometry", self.saveGeometry())
         self.hide()
         self.driver.stop()
+        self.recovery.close()
+        self.autosave.close()
         self.editor.close()
         self.files.loader.cancel()
         self.worker.ask_to_stop()

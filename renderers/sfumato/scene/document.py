@@ -33,7 +33,7 @@ class Document:
         self._clock = clock
         self._last_edit = float("-inf")
         self._open_drag: tuple[Scene, str] | None = None
-        self._saved = scene
+        self._saved: Scene | None = scene
 
     @property
     def scene(self) -> Scene:
@@ -48,6 +48,10 @@ class Document:
     def mark_saved(self) -> None:
         """Remember the current scene as the saved one."""
         self._saved = self._scene
+
+    def mark_unsaved(self) -> None:
+        """Count the current scene as saved nowhere: it was recovered."""
+        self._saved = None
 
     def subscribe(self, listener: Listener) -> Callable[[], None]:
         """Call ``listener(old, new)`` on each change; returns a function that ends it."""
