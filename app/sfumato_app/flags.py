@@ -15,6 +15,7 @@ from cyclopts import Group, Parameter
 from sfumato import Camera, LoadError, Scene, SceneError, TransferFunction
 from sfumato.scene import STANDARD_VIEWS, Field, Light, fields_of, parse_setting
 from sfumato.scene.params import from_json
+from sfumato.scene.rigs import rig_named, rigs
 from sfumato.techniques import techniques
 
 from .errors import UsageError
@@ -24,9 +25,11 @@ from .opening import SCENE_SUFFIX
 if TYPE_CHECKING:
     TechniqueId: TypeAlias = str
     View: TypeAlias = str
+    RigId: TypeAlias = str
 else:
     TechniqueId = Literal[tuple(techniques())]
     View = Literal[tuple(STANDARD_VIEWS)]
+    RigId = Literal[tuple(rigs())]
 
 LIGHT = Group("The first light")
 OWN = Group("The technique's own parameters", help="Each for the techniques named with it.")
@@ -52,6 +55,9 @@ class SceneFlags:
 
     technique: Annotated[
         TechniqueId | None, Parameter(help="How the volume is lit (see: sfumato techniques).")
+    ] = None
+    rig: Annotated[
+        RigId | None, Parameter(help="A set of lamps, instead of the scene's; the first is the key.")
     ] = None
     transfer: Annotated[
         str | None,
@@ -170,6 +176,8 @@ def changed(scene: Scene, flags: SceneFlags, own: Any, aspect: float) -> Scene:
     settings.pop("technique", None)
     if technique and technique != scene.technique_id:
         scene = scene.with_(technique=technique)
+    if flags.rig:
+        scene = scene.with_(lights=rig_named(flags.rig).lights)
     if flags.transfer:
         scene = scene.with_(transfer=transfer_of(scene, flags.transfer))
     if flags.camera:

@@ -33,7 +33,7 @@ DRAG_LADDER = (
 #: A drag frame slower than this, in seconds, makes the next one coarser; one quicker than a fifth, finer.
 DRAG_SECONDS = 0.25
 #: Quality and jittered frames of thumbnails.
-THUMBNAIL = Quality(step=2.0, light=2.0)
+THUMBNAIL = Quality(step=3.0, light=3.0)
 THUMBNAIL_FRAMES = 2
 #: A drag's frame that takes longer than this, in seconds, shows its progress.
 SLOW_SECONDS = 0.5
@@ -49,11 +49,13 @@ class Picture:
     seconds: float
     frames: int
     interactive: bool
+    #: Frames that it will have in the end.
+    wanted: int = STILL_FRAMES
 
     @property
     def settled(self) -> bool:
         """Whether no better picture of this scene will follow."""
-        return not self.interactive and self.frames >= STILL_FRAMES
+        return not self.interactive and self.frames >= self.wanted
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,7 @@ class ViewRequest:
     scene: Scene
     size: tuple[int, int]
     interactive: bool
+    frames: int = STILL_FRAMES
 
 
 @dataclass(frozen=True)
@@ -199,7 +202,7 @@ class RenderWorker(QObject):
     def _draw(self, renderer: Any, request: ViewRequest) -> None:
         quality = DRAG_LADDER[self._rung] if request.interactive else FULL
         with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
-            count = 1 if request.interactive else STILL_FRAMES
+            count = 1 if request.interactive else request.frames
             for index in range(count):
                 started = time.perf_counter()
                 for done in accumulation.add_frame():
@@ -282,7 +285,15 @@ def _accumulation(renderer: Any, scene: Scene, size: tuple[int, int], quality: Q
 
 def _picture(accumulation: Any, request: ViewRequest, seconds: float) -> Picture:
     shown = _image(accumulation)
-    return Picture(shown, request.scene, request.size, seconds, accumulation.frames, request.interactive)
+    return Picture(
+        shown,
+        request.scene,
+        request.size,
+        seconds,
+        accumulation.frames,
+        request.interactive,
+        request.frames,
+    )
 
 
 def _image(accumulation: Any) -> QImage:

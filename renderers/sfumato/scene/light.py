@@ -105,6 +105,7 @@ class Light:
         10.0,
         10.0,
     )
+    solo: bool = False
 
     def __post_init__(self) -> None:
         check(self)
@@ -153,6 +154,13 @@ class Light:
         tilt = math.degrees(math.acos(max(-1.0, min(1.0, z))))
         rotation = math.degrees(math.atan2(y, x)) % 360.0
         return nearest_possible_tilt(tilt, self.aperture), rotation
+
+
+def shining(lights: tuple[Light, ...]) -> tuple[Light, ...]:
+    """Return the lamps that shine: those that are not muted; of them only the solo ones, if there are any."""
+    enabled = tuple(light for light in lights if light.enabled)
+    chosen = tuple(light for light in enabled if light.solo) or enabled
+    return tuple(light for light in chosen if light.intensity > 0)
 
 
 #: Angle in degrees that keeps a cone clear of grazing incidence, where its section grows without bound.

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from ..errors import LoadError, SceneError
 from .camera import Camera
 from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
-from .light import Light
+from .light import Light, shining
 from .params import Param, check, fields_of, from_json, to_json
 from .paths import changed, plant
 from .transfer import TransferFunction
@@ -134,8 +134,8 @@ class Scene:
 
     @property
     def active_lights(self) -> tuple[Light, ...]:
-        """The lights that shine."""
-        return tuple(light for light in self.lights if light.enabled and light.intensity > 0)
+        """The lights that shine (see `shining`)."""
+        return shining(self.lights)
 
     def light_angles(self) -> tuple[tuple[float, float], ...]:
         """Tilt and rotation in degrees of each active light, as the camera sees it."""
