@@ -7,6 +7,7 @@ from qtpy.QtCore import QObject, QTimer
 from sfumato import Scene
 
 from .editing import Editor
+from .quality import chosen_quality
 from .viewport import Viewport
 from .worker import Picture, RenderWorker, ViewRequest
 
@@ -23,6 +24,7 @@ class ViewDriver(QObject):
         super().__init__(viewport)
         self._editor, self._viewport, self._worker = editor, viewport, worker
         self._unlit = False
+        self._frames = chosen_quality().frames
         self._still = QTimer(self)
         self._still.setSingleShot(True)
         self._still.timeout.connect(lambda: self._request(interactive=False))
@@ -41,6 +43,12 @@ class ViewDriver(QObject):
             self._unlit = unlit
             self.ask()
 
+    def set_frames(self, frames: int) -> None:
+        """Let a still picture accumulate so many frames."""
+        if frames != self._frames:
+            self._frames = frames
+            self.ask()
+
     @property
     def shown_scene(self) -> Scene:
         """The scene that the viewport shows."""
@@ -53,7 +61,8 @@ class ViewDriver(QObject):
 
     def _request(self, interactive: bool) -> None:
         if self._editor.scene.volume is not None and self._viewport.isVisible():
-            self._worker.show(ViewRequest(self.shown_scene, self._viewport.pixel_size, interactive))
+            size = self._viewport.pixel_size
+            self._worker.show(ViewRequest(self.shown_scene, size, interactive, self._frames))
 
     def _on_picture(self, picture: Picture) -> None:
         """Show a picture, unless it is of data that are no longer open."""

@@ -7,7 +7,7 @@ from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QSizePolic
 
 from sfumato import Volume
 
-from .worker import STILL_FRAMES, Picture
+from .worker import Picture
 
 
 class StatusLine(QFrame):
@@ -51,7 +51,7 @@ class StatusLine(QFrame):
     def show_picture(self, picture: Picture) -> None:
         """Say how the newest picture came about."""
         width, height = picture.image.width(), picture.image.height()
-        kind = "moving" if picture.interactive else f"frame {picture.frames} of {STILL_FRAMES}"
+        kind = "moving" if picture.interactive else f"frame {picture.frames} of {picture.wanted}"
         self.state.setText(f"{_duration(picture.seconds)}   {width} × {height}   {kind}")
         if picture.settled:
             self.bar.hide()

@@ -159,7 +159,7 @@ class Viewport(QWidget):
                 painter, self.rect(), camera_moves.edge_letters(scene.camera) if known else None
             )
         self._paint_tool(painter)
-        if self.hint and scene.volume is not None:
+        if self.hint and self._tool == "orbit" and scene.volume is not None:
             overlay.draw_hint(painter, self.rect(), self.hint)
         if self.hasFocus():
             painter.setBrush(Qt.BrushStyle.NoBrush)

@@ -1,4 +1,7 @@
-"""The View tab: standard views, projection and lens, exposure, background; sampling and theme under More."""
+"""The View tab: standard views, projection, lens, clip planes, crop box, exposure, background.
+
+Under More: quality of the still picture, sampling, theme.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +20,11 @@ from sfumato import Camera, Scene
 from sfumato.scene import STANDARD_VIEWS, fields_of
 
 from .. import camera_moves
+from ..clip_controls import ClipControls, CropControls
+from ..clip_planes import ClipPlanes
 from ..editing import Editor
 from ..generated import ChoiceBox, bind_slider, labelled, slider_for
+from ..quality import QUALITIES, chosen_quality, remember_quality
 from ..section import Section
 from ..theme import THEMES, current_theme
 from .page import Page
@@ -38,27 +44,37 @@ class ViewPage(Page):
     theme_chosen = Signal(str)
     #: The user asked to see the whole subject from a side ("" keeps the side).
     view_chosen = Signal(str)
+    #: A still picture is to have so many frames.
+    frames_chosen = Signal(int)
 
-    def __init__(self, editor: Editor) -> None:
+    def __init__(self, editor: Editor, clips: ClipPlanes) -> None:
         super().__init__()
         self._editor = editor
         self.views = self._view_buttons()
         self.parallel = QCheckBox("Orthographic")
         self.parallel.setToolTip("Parallel projection: no foreshortening, lengths can be compared")
         self.lens = slider_for(fields_of(Camera)["view_angle"])
+        self.clip = ClipControls(editor, clips)
+        self.crop = CropControls(editor, clips)
         self.exposure = slider_for(fields_of(Scene)["exposure"])
         self.step = slider_for(fields_of(Scene)["step"])
         self.background: list[QPushButton] = []
         self.more = Section("More", "view_more")
+        self.quality = ChoiceBox()
         self.theme = ChoiceBox()
         self.add_heading("Camera")
         self.add(self.views)
         self.add(self.parallel)
         self.add(self.lens)
+        self.add_heading("Clip planes")
+        self.add(self.clip)
+        self.add_heading("Crop box")
+        self.add(self.crop)
         self.add_heading("Picture")
         self.add(self.exposure)
         self.add(self._background_row())
         self.add(self.more)
+        self.more.add(self._quality_row())
         self.more.add(self.step)
         self.more.add(self._theme_row())
         self.finish()
@@ -99,6 +115,14 @@ class ViewPage(Page):
             layout.addWidget(button, 1)
         return row
 
+    def _quality_row(self) -> QWidget:
+        self.quality.setAccessibleName("Quality")
+        self.quality.setToolTip("How far a still picture is refined: jittered frames that it accumulates")
+        for quality in QUALITIES:
+            self.quality.addItem(f"{quality.title} ({quality.frames} frames)", quality)
+        self.quality.setCurrentIndex(QUALITIES.index(chosen_quality()))
+        return labelled("Quality", self.quality)
+
     def _theme_row(self) -> QWidget:
         self.theme.setAccessibleName("Theme")
         for name in THEMES:
@@ -113,10 +137,15 @@ class ViewPage(Page):
         self.lens.drag_finished.connect(editor.end)
         bind_slider(self.exposure, editor, "exposure", "exposure")
         bind_slider(self.step, editor, "step", "sampling")
+        self.quality.activated.connect(self._choose_quality)
         self.theme.activated.connect(lambda i: self.theme_chosen.emit(self.theme.itemData(i)))
         editor.changed.connect(lambda old, new: self.refresh())
 
     # -- edits and showing ------------------------------------------------------------------------
+    def _choose_quality(self, index: int) -> None:
+        remember_quality(QUALITIES[index])
+        self.frames_chosen.emit(QUALITIES[index].frames)
+
     def _set_background(self, name: str) -> None:
         self._editor.change("Change the background", background=BACKGROUNDS[name])
         self.refresh()
@@ -137,6 +166,8 @@ class ViewPage(Page):
     def refresh(self) -> None:
         """Show the scene's values."""
         scene = self._editor.scene
+        self.clip.refresh()
+        self.crop.refresh()
         self.exposure.set_number(scene.exposure)
         self.step.set_number(scene.step)
         for button, color in zip(self.background, BACKGROUNDS.values(), strict=True):

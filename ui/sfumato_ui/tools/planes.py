@@ -63,7 +63,7 @@ def handles(scene: Scene, view: PictureView) -> list[Handle]:
         assert scene.volume is not None
         offset = float(unit(plane.normal) @ np.subtract(plane.point, scene.volume.center))
         move = along(view, middle, unit(plane.normal))
-        made.append(Handle(f"plane.{i}.move", f"Plane {i + 1}: {offset:.1f} mm", place, move))
+        made.append(Handle(f"plane.{i}.move", f"Plane {i + 1}: {offset:.1f} mm", place, move, "diamond"))
         made.append(
             Handle(f"plane.{i}.tilt", f"Tilt plane {i + 1}", arm_place(view, place, plane), None, "round")
         )
