@@ -11,6 +11,7 @@ from qtpy.QtWidgets import QListView, QListWidget, QListWidgetItem
 from sfumato.scene.presets import Preset
 
 from .theme import PICTURE_GREY
+from .transfer_editor.painting import small
 from .transfer_preview import swatch
 
 #: Width and height of a preset's picture in pixels.
@@ -104,7 +105,8 @@ class PresetGallery(QListWidget):
 
     # -- size -------------------------------------------------------------------------------------
     def _fit(self) -> None:
-        """Take the height of all rows."""
+        """Take the height of all rows; the names are a little smaller than other text, so that they fit."""
+        self.setFont(small(self.parentWidget().font() if self.parentWidget() else self.font()))
         width = max(1, (self.width() - 2 * self.frameWidth() - 2) // COLUMNS)
         height = PICTURE[1] + self.fontMetrics().height() + 14
         self.setGridSize(QSize(width, height))

@@ -32,12 +32,17 @@ class Areas:
     marks: QRectF
 
 
-def areas_of(width: float, height: float, line: float, marked: bool) -> Areas:
-    """Divide the widget; `line` is the height of a line of small text."""
+def areas_of(width: float, height: float, line: float, gutter: float, marked: bool) -> Areas:
+    """Divide the widget.
+
+    `line` is the height of a line of small text, `gutter` the room for numbers at the right; `marked` leaves
+    a line for the tissues.
+    """
     box = QRectF(0.5, 0.5, width - 1, height - line - 4)
-    marks = QRectF(box.left() + _INSET, box.top() + 3, box.width() - 2 * _INSET, line + 3 if marked else 0.0)
+    inside = box.width() - 2 * _INSET - gutter
+    marks = QRectF(box.left() + _INSET, box.top() + 3, inside, line + 3 if marked else 0.0)
     top = marks.bottom() + 9
-    strip = QRectF(box.left() + _INSET, box.bottom() - STRIP - 6, box.width() - 2 * _INSET, STRIP)
+    strip = QRectF(box.left() + _INSET, box.bottom() - STRIP - 6, inside, STRIP)
     plot = QRectF(strip.left(), top, strip.width(), strip.top() - 9 - top)
     return Areas(box, plot, strip, QRectF(strip.left(), box.bottom() + 3, strip.width(), line), marks)
 
@@ -83,7 +88,7 @@ def draw_histogram(painter: QPainter, scale: Scale, histogram: Histogram, theme:
 
 
 def draw_lines(painter: QPainter, scale: Scale, theme: Theme) -> None:
-    """Draw the lines of round opacities, with their numbers at the right."""
+    """Draw the lines of round opacities, with their numbers in the gutter at the right."""
     metrics = QFontMetricsF(painter.font())
     for opacity in (0.0, *OPACITY_LINES):
         y = round(scale.y(opacity)) + 0.5
@@ -92,8 +97,7 @@ def draw_lines(painter: QPainter, scale: Scale, theme: Theme) -> None:
         if opacity > 0:
             text = f"{100 * opacity:g} %"
             painter.setPen(QColor(theme.muted))
-            x = scale.rect.right() + 4 - metrics.horizontalAdvance(text)
-            painter.drawText(QPointF(x, y + metrics.ascent() + 1), text)
+            painter.drawText(QPointF(scale.rect.right() + 9, y + 0.36 * metrics.ascent()), text)
 
 
 def draw_axis(
@@ -102,7 +106,7 @@ def draw_axis(
     """Draw round values below, and the unit at the right end."""
     metrics, axis = QFontMetricsF(painter.font()), areas.axis
     painter.setPen(QColor(theme.muted))
-    right = axis.right() + 6
+    right = areas.box.right() - 2
     if unit:
         right -= metrics.horizontalAdvance(unit)
         painter.drawText(QPointF(right, axis.top() + metrics.ascent()), unit)
@@ -112,8 +116,8 @@ def draw_axis(
         text, x = text_of(value, decimals), scale.x(value + zero)
         half = metrics.horizontalAdvance(text) / 2
         painter.drawLine(QPointF(x, areas.box.bottom() + 1), QPointF(x, areas.box.bottom() + 4))
-        if x - half > axis.left() - 8 and x + half < right:
-            painter.drawText(QPointF(x - half, axis.top() + metrics.ascent() + 1), text)
+        if x + half < right:
+            painter.drawText(QPointF(max(1.0, x - half), axis.top() + metrics.ascent()), text)
 
 
 def draw_tissues(painter: QPainter, areas: Areas, scale: Scale, theme: Theme, zero: float) -> None:

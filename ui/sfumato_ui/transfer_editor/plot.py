@@ -400,8 +400,9 @@ class TransferPlot(QWidget):
 
     # -- looks ------------------------------------------------------------------------------------
     def _areas(self) -> painting.Areas:
-        line = QFontMetricsF(painting.small(self.font())).height()
-        return painting.areas_of(self.width(), self.height(), line, self.zero is not None)
+        metrics = QFontMetricsF(painting.small(self.font()))
+        gutter = metrics.horizontalAdvance("100 %") + 2
+        return painting.areas_of(self.width(), self.height(), metrics.height(), gutter, self.zero is not None)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw everything; the cost is that of some hundred points."""
