@@ -50,6 +50,11 @@ class ViewDriver(QObject):
             self.ask()
 
     @property
+    def has_picture(self) -> bool:
+        """Whether the viewport shows a picture."""
+        return self._viewport.picture is not None
+
+    @property
     def shown_scene(self) -> Scene:
         """The scene that the viewport shows."""
         scene = self._editor.scene

@@ -42,8 +42,9 @@ from .status import StatusLine
 from .tab_order import set_tab_order
 from .theme import apply_theme
 from .thumbnails import Thumbnails
+from .trouble import Trouble
 from .viewport import Viewport
-from .worker import Picture, RenderWorker
+from .worker import RenderWorker
 
 PANEL_WIDTH = 320
 HINT = "Shift-drag moves the light"
@@ -76,8 +77,8 @@ class MainWindow(QMainWindow):
         self.view_page = ViewPage(self.editor, self.viewport.clips)
         self.autosave = Autosave(self.editor, self.files.identify, self)
         self.recovery = Recovery(self.messages, self.files.recover)
+        self.trouble = Trouble(self.editor, self.files, self.driver, self.worker, self.messages)
         self._closed = False
-        self._render_failed = False
         self._lay_out()
         self._connect()
         self._add_shortcuts()
@@ -136,10 +137,9 @@ class MainWindow(QMainWindow):
         editor.changed.connect(lambda old, new: self._show_title())
         editor.history_changed.connect(self._show_title)
         editor.rejected.connect(self.messages.show_error)
-        worker.picture.connect(self._on_picture)
+        worker.picture.connect(self.status.show_picture)
         worker.progress.connect(self.status.show_progress)
         worker.ready.connect(self.status.show_renderer)
-        worker.failed.connect(self._on_render_failed)
         self.files.opened.connect(self._show_document)
         self.files.scene_saved.connect(self._show_title)
         self.files.scene_saved.connect(self.autosave.watch)
@@ -192,18 +192,6 @@ class MainWindow(QMainWindow):
         name = self.files.name
         self.setWindowTitle(f"{name}[*] – Sfumato" if name else "Sfumato[*]")
         self.setWindowModified(self.editor.document.modified)
-
-    def _on_picture(self, picture: Picture) -> None:
-        if self._render_failed:
-            self._render_failed = False
-            self.messages.clear("error")
-        self.status.show_picture(picture)
-
-    def _on_render_failed(self, message: str) -> None:
-        self._render_failed = True
-        self.messages.show_error(
-            f"{message}. The last good picture stays; undo, or choose another technique."
-        )
 
     def set_theme(self, name: str) -> None:
         """Show the window in another theme, and remember it."""

@@ -11,15 +11,15 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Hashable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from qtpy.QtCore import QObject, QThread, Signal
 from qtpy.QtGui import QImage
 
-from sfumato import Scene, SfumatoError
+from sfumato import GpuError, Scene, SfumatoError
 from sfumato.techniques.frame import FULL, Quality
 
 #: Jittered frames that a still picture accumulates.
@@ -96,8 +96,8 @@ class RenderWorker(QObject):
     progress = Signal(float)
     #: The renderer is there (its name).
     ready = Signal(str)
-    #: Something went wrong: one line; the worker lives on.
-    failed = Signal(str)
+    #: Something went wrong: one line, and what would help (as in `GpuError`); the worker lives on.
+    failed = Signal(str, str)
     saved = Signal(str)
     save_progress = Signal(float)
     save_cancelled = Signal()
@@ -116,6 +116,7 @@ class RenderWorker(QObject):
         self._settled = False
         self._stopping = False
         self._rung = 0
+        self._scale = 1.0
         self._thread = threading.Thread(target=self._run, name="sfumato-render", daemon=True)
 
     # -- called by the window ---------------------------------------------------------------------
@@ -138,6 +139,15 @@ class RenderWorker(QObject):
     def cancel_save(self) -> None:
         """Give up the picture that is being written."""
         self._cancel_save = True
+
+    @property
+    def scale(self) -> float:
+        """Part of the window's resolution that is drawn."""
+        return self._scale
+
+    def set_scale(self, scale: float) -> None:
+        """Draw what follows at a part (0 to 1) of the window's resolution: the device has no room for more."""
+        self._scale = scale
 
     def want_thumbnails(self, group: str, requests: list[ThumbnailRequest]) -> None:
         """Ask for small pictures when there is nothing else to do, instead of all others of their group."""
@@ -180,16 +190,46 @@ class RenderWorker(QObject):
         if self._stopping:
             return
         try:
-            renderer = self._ensure_renderer()
-            if save is not None:
-                self._write(renderer, save)
-            elif view is not None:
-                self._draw(renderer, view)
-            elif thumbnail is not None:
-                self._draw_thumbnail(renderer, thumbnail)
+            self._serve_twice(save, view, thumbnail)
         except Exception as error:
             if not self._stopping:
-                self.failed.emit(one_line(error))
+                # A smaller view helps no picture that is being saved.
+                self.failed.emit(one_line(error), _remedy(error) if save is None else "")
+
+    def _serve_twice(
+        self, save: SaveRequest | None, view: ViewRequest | None, thumbnail: ThumbnailRequest | None
+    ) -> None:
+        """Do a job; if the context is lost over it, once more with a new renderer."""
+        try:
+            self._serve(save, view, thumbnail)
+        except GpuError as error:
+            if error.remedy != "new renderer" or self._stopping:
+                raise
+            self._drop_renderer()
+            try:
+                self._serve(save, view, thumbnail)
+            except GpuError as again:
+                if again.remedy == "new renderer":
+                    self._drop_renderer()
+                raise
+
+    def _serve(
+        self, save: SaveRequest | None, view: ViewRequest | None, thumbnail: ThumbnailRequest | None
+    ) -> None:
+        renderer = self._ensure_renderer()
+        if save is not None:
+            self._write(renderer, save)
+        elif view is not None:
+            self._draw(renderer, view)
+        elif thumbnail is not None:
+            self._draw_thumbnail(renderer, thumbnail)
+
+    def _drop_renderer(self) -> None:
+        """Part with a renderer whose context is lost; the next job makes a new one."""
+        lost, self._renderer = self._renderer, None
+        # Freeing what is lost may fail in ways of the driver's own; there is nothing left to save.
+        with suppress(Exception):
+            lost.close()
 
     def _ensure_renderer(self) -> Any:
         if self._renderer is None:
@@ -201,6 +241,7 @@ class RenderWorker(QObject):
 
     def _draw(self, renderer: Any, request: ViewRequest) -> None:
         quality = DRAG_LADDER[self._rung] if request.interactive else FULL
+        quality = replace(quality, scale=quality.scale * self._scale)
         with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
             count = 1 if request.interactive else request.frames
             for index in range(count):
@@ -305,6 +346,12 @@ def _image(accumulation: Any) -> QImage:
     height, width = pixels.shape[:2]
     image = QImage(pixels.data, width, height, 4 * width, QImage.Format.Format_RGBA8888)
     return image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
+
+
+def _remedy(error: BaseException) -> str:
+    if isinstance(error, MemoryError):
+        return "smaller picture"
+    return error.remedy if isinstance(error, GpuError) else ""
 
 
 def one_line(error: BaseException) -> str:
