@@ -34,13 +34,16 @@ class Error:
     ----------
     rmse, bias, p99 : float
         Root mean square, mean, and 99th percentile of the absolute difference.
+    fringe : float
+        Fine structure of the difference (root mean square; see `detail`).
     copies : float
-        Detail of the difference over detail of the truth (see `copies`).
+        The same over that of the truth (see `copies`).
     """
 
     rmse: float
     bias: float
     p99: float
+    fringe: float
     copies: float
 
 
@@ -152,6 +155,7 @@ def error(picture: np.ndarray, truth: Truth) -> Error:
         float(np.sqrt(np.mean(inside**2))),
         float(inside.mean()),
         float(np.percentile(np.abs(inside), 99)),
+        detail(difference, truth.mask),
         copies(difference, truth),
     )
 
@@ -160,7 +164,8 @@ def copies(difference: np.ndarray, truth: Truth) -> float:
     """Return how much detail a difference of brightness has, relative to the detail of the truth.
 
     Detail is what a Gaussian blur within the mask takes away. A shadow that is merely too soft or too dark on
-    the whole hardly counts; edges where the truth has a smooth penumbra do.
+    the whole hardly counts; edges where the truth has a smooth penumbra do. For comparison, exact rays along
+    8, 16 and 64 directions instead of a cone have 4.4, 2.8 and 1.0 (shapes, 0/30), 0.9, 0.5 and 0.1 (hand, 35/15).
     """
     return detail(difference, truth.mask) / max(detail(truth.shadow, truth.mask), LEAST_DETAIL)
 

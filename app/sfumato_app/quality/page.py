@@ -37,6 +37,8 @@ _COPIES = """
 
 Detail of the difference over the detail of the truth, detail being what a Gaussian blur of {scale:g} % of the
 picture's side takes away. Edges within a smooth penumbra, as the copies are that a few directions leave, count here.
+Exact rays along 8, 16 and 64 directions instead of a cone have 4.4, 2.8 and 1.0 in `shapes`, 0.9, 0.5 and 0.1 in
+`hand`.
 
 """
 _SLICES = """

@@ -19,6 +19,8 @@ FORMAT_VERSION = 1
 #: Ours and the published technique, between which the goals are set.
 OURS, PUBLISHED = "cone", "multidirectional"
 MEAN_ONE, MEAN_STILL, WORST, SHARE, UNCHANGED = 0.04, 0.03, 0.05, 0.5, 1 / 255
+#: What the truth's own detail is: more that it has not, and copies of shadows are seen.
+COPIES = 1.0
 
 
 @dataclass(frozen=True)
@@ -104,16 +106,13 @@ def goals(report: Report) -> list[tuple[str, bool]]:
         if shares:
             text = f"{name} at most {max(shares):.2f} of the published error <= {SHARE:g}"
             found.append((text, max(shares) <= SHARE))
+        seen = max(r.errors[n].copies for r in report.of(contestant))
+        found.append((f"{name} copies {seen:.2f} <= {COPIES:g}", seen <= COPIES))
         spreads = [r.slices_spread for r in report.of(contestant) if r.slices_spread is not None]
-        if spreads and n == min(errors_frames(report)):
+        if spreads and n == min(frames for _, frames in report.rows):
             text = f"{name} between numbers of slices {max(spreads) * 255:.2f}/255 <= 1/255"
             found.append((text, max(spreads) <= UNCHANGED))
     return found
-
-
-def errors_frames(report: Report) -> list[int]:
-    """Return all numbers of frames that were looked at."""
-    return sorted({n for _, n in report.rows})
 
 
 def _limit(frames: int) -> float:
