@@ -40,7 +40,8 @@ class Trouble(QObject):
         self._bar.show_error(f"{message}. {kept}{hint}", answers)
 
     def _on_picture(self, picture: Picture) -> None:
-        if self._failed:
+        # A coarse picture, which a device may have room for, does not mend the full one.
+        if self._failed and not picture.interactive:
             self._failed = False
             self._bar.clear("error")
 
