@@ -40,6 +40,7 @@ from .scene import (
 )
 
 if TYPE_CHECKING:
+    from .export.terms import render_terms
     from .io import load
     from .renderer import Quality, Renderer, render
 
@@ -65,10 +66,17 @@ __all__ = [
     "VolumeInfo",
     "load",
     "render",
+    "render_terms",
 ]
 
 #: Names that bring GL or readers along; imported when first used, so that ``import sfumato`` stays quick.
-_LAZY = {"load": ".io", "render": ".renderer", "Renderer": ".renderer", "Quality": ".renderer"}
+_LAZY = {
+    "load": ".io",
+    "render": ".renderer",
+    "render_terms": ".export.terms",
+    "Renderer": ".renderer",
+    "Quality": ".renderer",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Generator
 from typing import Any
 
 import moderngl
@@ -46,7 +46,13 @@ class Renderer:
         """Version of OpenGL."""
         return self.device.version
 
-    def begin(self, scene: Scene, size: tuple[int, int], quality: Quality = FULL) -> Accumulation:
+    def begin(
+        self,
+        scene: Scene,
+        size: tuple[int, int],
+        quality: Quality = FULL,
+        part: tuple[int, int, int, int] | None = None,
+    ) -> Accumulation:
         """Start a picture; add frames to it until it is good enough.
 
         Parameters
@@ -55,6 +61,9 @@ class Renderer:
             What to draw; it needs a volume.
         size : (int, int)
             Width and height in pixels, before the quality's scale.
+        part : (int, int, int, int), optional
+            Draw only this part of the picture, at full scale: x and y of its corner from the left and the top,
+            width and height, in pixels.
 
         Raises
         ------
@@ -63,11 +72,14 @@ class Renderer:
         """
         if scene.volume is None:
             raise SceneError("volume", None, "a scene needs a volume to be drawn")
-        width, height = (int(v) for v in size)
+        width, height = (int(v) for v in (part[2:] if part else size))
         limit = min(MAX_SIDE, self.device.max_texture_2d)
         if not (1 <= width <= limit and 1 <= height <= limit):
             raise SceneError("size", size, f"1 to {limit} pixels on a side")
         self.device.make_current()
+        if part is not None:
+            corner = part[0], size[1] - part[1] - part[3]
+            return Accumulation(self, scene, (width, height), quality, corner, size)
         scaled = max(1, round(width * quality.scale)), max(1, round(height * quality.scale))
         return Accumulation(self, scene, scaled, quality)
 
@@ -128,16 +140,25 @@ class Accumulation:
         Frames so far.
     """
 
-    def __init__(self, renderer: Renderer, scene: Scene, size: tuple[int, int], quality: Quality) -> None:
+    def __init__(
+        self,
+        renderer: Renderer,
+        scene: Scene,
+        size: tuple[int, int],
+        quality: Quality,
+        corner: tuple[int, int] = (0, 0),
+        whole: tuple[int, int] | None = None,
+    ) -> None:
         self.renderer = renderer
         self.scene = scene
         self.size = size
         self.quality = quality
+        self._corner, self._whole = corner, whole
         self.frames = 0
         self._total: Target | None = None
         self._latest: Target | None = None
 
-    def add_frame(self) -> Iterator[float]:
+    def add_frame(self) -> Generator[float, None, None]:
         """Draw one more frame in bounded pieces, yielding progress (0 to 1); stop iterating to cancel it.
 
         Raises
@@ -149,7 +170,9 @@ class Accumulation:
         device.make_current()
         if self._latest is None:
             self._latest, self._total = Target(device, self.size), Target(device, self.size)
-        frame = Frame(device, self.scene, self.size, self._latest, self.quality, self.frames)
+        frame = Frame(
+            device, self.scene, self.size, self._latest, self.quality, self.frames, self._corner, self._whole
+        )
         pieces = self.renderer.painter(self.scene).paint(frame)
         try:
             for progress in pieces:
@@ -200,7 +223,8 @@ def _premultiplied(scene: Scene) -> tuple[float, float, float, float]:
 _own = threading.local()
 
 
-def _renderer_of_this_thread() -> Renderer:
+def renderer_of_this_thread() -> Renderer:
+    """Return the calling thread's own renderer, which `render` uses too."""
     if not hasattr(_own, "renderer"):
         _own.renderer = Renderer()
     return _own.renderer  # type: ignore[no-any-return]
@@ -231,7 +255,7 @@ def render(scene: Scene, size: tuple[int, int] = (512, 512), *, linear: bool = F
     GpuError
         If the device cannot do it.
     """
-    renderer = _renderer_of_this_thread()
+    renderer = renderer_of_this_thread()
     job: Any = renderer.begin(scene, size)
     try:
         for _ in range(scene.frames):

@@ -10,7 +10,8 @@ import numpy as np
 from ..errors import SfumatoError
 from ..scene import Scene
 from .atomic import replacing
-from .png import KEYWORD, scene_text
+from .png import scene_text
+from .streams import KEYWORD
 
 #: File name endings of linear pictures.
 LINEAR_SUFFIXES = (".exr", ".npy")

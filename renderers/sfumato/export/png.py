@@ -19,22 +19,26 @@ import numpy as np
 from ..errors import LoadError, SceneError
 from ..scene import Scene, Volume
 from .atomic import replacing
+from .streams import KEYWORD, PngStream
 
-KEYWORD = "sfumato-scene"
 SAMPLE = "sample:"
 #: Bytes of text that a reader takes; a scene with many tracts stays far below.
 MAX_TEXT = 1 << 26
 
 
-def write_png(path: str | os.PathLike[str], picture: np.ndarray, scene: Scene | None = None) -> None:
+def write_png(
+    path: str | os.PathLike[str], picture: np.ndarray, scene: Scene | None = None, dpi: float | None = None
+) -> None:
     """Write a picture, atomically, with its scene.
 
     Parameters
     ----------
-    picture : ndarray, shape (height, width, 4), uint8
+    picture : ndarray, shape (height, width, 4), uint8 or uint16
         sRGB, straight alpha, the top row first; as from `sfumato.render`.
     scene : Scene, optional
         What the picture shows.
+    dpi : float, optional
+        Pixels per inch, which the file tells the printer.
 
     Raises
     ------
@@ -43,21 +47,18 @@ def write_png(path: str | os.PathLike[str], picture: np.ndarray, scene: Scene | 
     SfumatoError
         If the file cannot be written.
     """
-    from PIL import Image
-    from PIL.PngImagePlugin import PngInfo
-
-    if picture.dtype != np.uint8 or picture.ndim != 3 or picture.shape[2] != 4 or picture.size == 0:
+    bits = {np.dtype(np.uint8): 8, np.dtype(np.uint16): 16}.get(picture.dtype)
+    if bits is None or picture.ndim != 3 or picture.shape[2] != 4 or picture.size == 0:
         raise SceneError(
             "picture",
             f"array of shape {picture.shape} and type {picture.dtype}",
-            "uint8 of shape (height, width, 4)",
+            "uint8 or uint16 of shape (height, width, 4)",
         )
-    chunks = PngInfo()
-    chunks.add(b"sRGB", b"\0")
-    if scene is not None:
-        chunks.add_itxt(KEYWORD, scene_text(scene), zip=True)
-    with replacing(path) as part:
-        Image.fromarray(np.ascontiguousarray(picture)).save(part, format="PNG", pnginfo=chunks)
+    height, width = picture.shape[:2]
+    with replacing(path) as part, open(part, "wb") as file:
+        stream = PngStream(file, (width, height), bits, scene_text(scene) if scene is not None else "", dpi)
+        stream.write(picture)
+        stream.close()
 
 
 def scene_text(scene: Scene) -> str:

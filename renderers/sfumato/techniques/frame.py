@@ -41,7 +41,8 @@ class Frame:
     """One frame to draw: scene, size in pixels, quality, which jitter, and where to.
 
     ``jitter`` is the offset of the slices or samples in units of the sampling distance, in [0, 1);
-    ``pixel_jitter`` the offset of the rays in pixels, each in [-0.5, 0.5].
+    ``pixel_jitter`` the offset of the rays in pixels, each in [-0.5, 0.5]. A frame may be a part of a ``whole``
+    larger picture: then ``corner`` is its lower left pixel, counted from the whole's lower left.
     """
 
     device: Device
@@ -50,6 +51,13 @@ class Frame:
     target: Target
     quality: Quality = FULL
     index: int = 0
+    corner: tuple[int, int] = (0, 0)
+    whole: tuple[int, int] | None = None
+
+    @property
+    def whole_size(self) -> tuple[int, int]:
+        """Size in pixels of the picture that the camera sees, of which this frame may be a part."""
+        return self.whole or self.size
 
     @property
     def volume(self) -> Volume:
@@ -62,6 +70,14 @@ class Frame:
         """The scene's camera."""
         assert self.scene.camera is not None
         return self.scene.camera
+
+    @property
+    def part_camera(self) -> Camera:
+        """The camera whose whole picture is this frame."""
+        if self.size == self.whole_size:
+            return self.camera
+        (x, y), (width, height), whole = self.corner, self.size, self.whole_size
+        return self.camera.cropped(x / whole[0], y / whole[1], (x + width) / whole[0], (y + height) / whole[1])
 
     @property
     def transfer(self) -> TransferFunction:

@@ -196,12 +196,13 @@ class Marcher:
 
 def set_view(program: Program, frame: Frame, stack: Stack | None) -> None:
     """Set the camera's uniforms and the grid of samples."""
-    camera, (width, height) = frame.camera, frame.size
+    camera, (width, height) = frame.camera, frame.whole_size
     basis = camera.basis()
     program.set(
         u_eye=camera.position, u_right=basis.right, u_up=basis.up, u_forward=basis.forward,
         u_half=camera.half_extent(width / height), u_center=camera.window_center, u_parallel=camera.parallel_projection,
         u_size=(float(width), float(height)), u_pixel_jitter=frame.pixel_jitter,
+        u_corner=tuple(map(float, frame.corner)),
         u_step=frame.step, u_z0=stack.z0 if stack else frame.jitter - 1,
         u_near=near_depth(frame), u_far=_FAR,
         u_edge=EDGE / frame.volume.min_spacing,
@@ -217,7 +218,7 @@ def max_secant(frame: Frame) -> float:
     """Return the largest secant of a view ray against the view axis."""
     if frame.camera.parallel_projection:
         return 1.0
-    half = np.asarray(frame.camera.half_extent(frame.size[0] / frame.size[1]))
+    half = np.asarray(frame.camera.half_extent(frame.whole_size[0] / frame.whole_size[1]))
     across = (1 + np.abs(frame.camera.window_center)) * half
     return math.hypot(1.0, *across.tolist())
 
@@ -225,6 +226,7 @@ def max_secant(frame: Frame) -> float:
 def pixel_box(frame: Frame, corners: np.ndarray) -> tuple[int, int, int, int]:
     """Return the pixels (x0, y0, x1, y1; y upwards) that a box given by its corners can cover."""
     width, height = frame.size
+    whole = np.asarray(frame.whole_size)
     at = View.of(frame.camera).coordinates(corners)
     depth = at[:, 2:3]
     if not frame.camera.parallel_projection:
@@ -232,10 +234,10 @@ def pixel_box(frame: Frame, corners: np.ndarray) -> tuple[int, int, int, int]:
             return 0, 0, width, height
         at = at / depth
     half, center = (
-        np.asarray(frame.camera.half_extent(width / height)),
+        np.asarray(frame.camera.half_extent(whole[0] / whole[1])),
         np.asarray(frame.camera.window_center),
     )
-    pixels = (at[:, :2] / half - center + 1) / 2 * np.array([width, height])
+    pixels = (at[:, :2] / half - center + 1) / 2 * whole - frame.corner
     low, high = np.floor(pixels.min(axis=0)) - 1, np.ceil(pixels.max(axis=0)) + 1
     x0, y0 = np.clip(low, 0, (width, height)).astype(int)
     x1, y1 = np.clip(high, 0, (width, height)).astype(int)

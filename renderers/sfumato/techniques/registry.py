@@ -48,6 +48,10 @@ class Technique:
         Whether the scene's lights have an effect.
     orbit_pops : bool
         Whether a full orbit of the light may change the picture abruptly (half-angle slicing's fault).
+    max_lights : int
+        How many of the active lights it uses, the first ones.
+    ambient_of_lamps : bool
+        Whether its parameter ``ambient`` is a share of each lamp, instead of a light of its own.
     options : dict
         Constants for the painter, where one painter serves several techniques.
     """
@@ -60,6 +64,8 @@ class Technique:
     source: str = ""
     lit: bool = True
     orbit_pops: bool = False
+    max_lights: int = 4
+    ambient_of_lamps: bool = False
     options: dict[str, Any] = field(default_factory=dict, compare=False)
 
     def make_painter(self, device: Any) -> Painter:

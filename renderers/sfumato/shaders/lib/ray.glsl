@@ -7,7 +7,8 @@ uniform vec3 u_forward;
 uniform vec2 u_half;         // half extent of the picture: mm (orthographic) or tangents (perspective)
 uniform vec2 u_center;       // window centre in half extents, as in VTK
 uniform bool u_parallel;
-uniform vec2 u_size;         // pixels
+uniform vec2 u_size;         // pixels of the whole picture
+uniform vec2 u_corner;       // pixels from its lower left corner to that of the part that is drawn
 uniform vec2 u_pixel_jitter; // pixels
 
 struct Ray {
@@ -18,7 +19,8 @@ struct Ray {
 };
 
 Ray view_ray(vec2 pixel) {
-    vec2 ndc = (pixel + u_pixel_jitter) / u_size * 2.0 - 1.0;
+    // The corner first, which is exact: so a tile's rays are those of the whole picture to the last bit.
+    vec2 ndc = (pixel + u_corner + u_pixel_jitter) / u_size * 2.0 - 1.0;
     vec2 across = (ndc + u_center) * u_half;
     vec3 offset = u_right * across.x + u_up * across.y;
     if (u_parallel) return Ray(u_eye + offset, u_forward, across, vec2(0.0));

@@ -25,5 +25,6 @@ TECHNIQUES = (
         "..techniques.half_angle.passes:HalfAnglePainter",
         source="Kniss2003",
         orbit_pops=True,
+        max_lights=1,
     ),
 )

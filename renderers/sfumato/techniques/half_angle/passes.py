@@ -215,7 +215,7 @@ def facing_surface(frame: Frame) -> float:
 
 def picture_from_world(frame: Frame) -> np.ndarray:
     """Return the 4 x 4 from world mm to clip space that belongs to the jittered rays of ``ray.glsl``."""
-    basis, (width, height) = frame.camera.basis(), frame.size
+    basis, (width, height) = frame.camera.basis(), frame.whole_size
     to_view = np.eye(4)
     to_view[:3, :3] = [basis.right, basis.up, basis.forward]
     to_view[:3, 3] = -to_view[:3, :3] @ np.asarray(frame.camera.position)
@@ -229,7 +229,12 @@ def picture_from_world(frame: Frame) -> np.ndarray:
         clip[:2, 2], clip[3, 2] = -shift, 1.0
         # -w <= z exactly where the depth is beyond the near plane; there is no far plane.
         clip[2, 2], clip[2, 3] = 1.0, -2 * near_depth(frame)
-    return np.asarray(clip @ to_view)
+    part = np.eye(4)
+    for axis in (0, 1):
+        share = frame.size[axis] / frame.whole_size[axis]
+        part[axis, axis] = 1 / share
+        part[axis, 3] = (1 - 2 * frame.corner[axis] / frame.whole_size[axis]) / share - 1
+    return np.asarray(part @ clip @ to_view)
 
 
 def _drawn_over(coordinates: np.ndarray) -> np.ndarray:

@@ -25,6 +25,7 @@ TECHNIQUES = (
         MultidirectionalParams,
         "..techniques.multidirectional.passes:OcclusionPainter",
         source="Soltesova2010",
+        ambient_of_lamps=True,
     ),
     Technique(
         "directional",
@@ -33,6 +34,7 @@ TECHNIQUES = (
         DirectionalParams,
         "..techniques.multidirectional.passes:OcclusionPainter",
         source="Schott2009",
+        ambient_of_lamps=True,
         options={"headlamp": True},
     ),
 )
