@@ -33,8 +33,9 @@ def plot(make_window: Any, ball_scene: Scene, qtbot: QtBot) -> TransferPlot:
     """The plot in a window whose Material tab is in front."""
     window: MainWindow = make_window(ball_scene, size=(760, 760))
     window.panel.setCurrentIndex(1)
-    qtbot.waitUntil(window.material_page.transfer.plot.isVisible)
-    return window.material_page.transfer.plot
+    plot = window.material_page.transfer.plot
+    qtbot.waitUntil(lambda: window.isActiveWindow() and plot.isVisible())
+    return plot
 
 
 @pytest.fixture

@@ -73,7 +73,7 @@ class OwnPresets:
         if len(name) > MAX_NAME:
             return f"At most {MAX_NAME} letters"
         if name.lower() in (n.lower() for n in self._paths):
-            return "There is an own preset of this name"
+            return "An own preset has this name"
         return ""
 
     def save(self, name: str, transfer: TransferFunction) -> None:

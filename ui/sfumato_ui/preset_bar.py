@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from qtpy.QtCore import Qt, Signal
+from qtpy.QtCore import QEvent, Qt, Signal
 from qtpy.QtGui import QKeyEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QPushButton, QToolButton, QVBoxLayout, QWidget
 
@@ -48,6 +48,11 @@ class AskLine(QWidget):
         """The field in which the name is typed."""
         return self._text
 
+    @property
+    def complaint(self) -> str:
+        """What it says about the name that is typed."""
+        return self._question.text()
+
     def ask_name(self, verb: str, name: str, complaint: Callable[[str], str]) -> None:
         """Ask for a name; `complaint` says what is wrong with one."""
         self._complaint = complaint
@@ -90,6 +95,14 @@ class AskLine(QWidget):
     def _give_up(self) -> None:
         self.hide()
         self.given_up.emit()
+
+    def event(self, event: QEvent) -> bool:
+        """Take Esc before the window's shortcut does."""
+        wanted = event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent)
+        if wanted and event.key() == Qt.Key.Key_Escape:
+            event.accept()
+            return True
+        return super().event(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Esc gives up, Enter agrees."""

@@ -21,7 +21,13 @@ _SWATCH = 7
 
 
 class PresetGallery(QListWidget):
-    """A grid of presets that is as tall as its rows; the wheel scrolls the panel around it."""
+    """A grid of presets that is as tall as its rows; the wheel scrolls the panel around it.
+
+    Attributes
+    ----------
+    pictures : dict of int to QImage
+        The pictures that have come, by row.
+    """
 
     #: The user chose this row.
     chosen = Signal(int)
@@ -32,7 +38,7 @@ class PresetGallery(QListWidget):
     def __init__(self) -> None:
         super().__init__()
         self._presets: tuple[Preset, ...] = ()
-        self._pictures: dict[int, QImage] = {}
+        self.pictures: dict[int, QImage] = {}
         self.setViewMode(QListView.ViewMode.IconMode)
         self.setMovement(QListView.Movement.Static)
         self.setResizeMode(QListView.ResizeMode.Adjust)
@@ -50,7 +56,7 @@ class PresetGallery(QListWidget):
     # -- contents ---------------------------------------------------------------------------------
     def fill(self, presets: Sequence[Preset]) -> None:
         """Show presets, by their colours until their pictures come."""
-        self._presets, self._pictures = tuple(presets), {}
+        self._presets, self.pictures = tuple(presets), {}
         self.blockSignals(True)
         self.clear()
         for preset in presets:
@@ -65,7 +71,7 @@ class PresetGallery(QListWidget):
     def show_picture(self, row: int, image: QImage) -> None:
         """Show a preset's picture."""
         if 0 <= row < self.count():
-            self._pictures[row] = image
+            self.pictures[row] = image
             self._draw(row)
 
     def mark(self, row: int | None) -> None:
@@ -92,8 +98,8 @@ class PresetGallery(QListWidget):
         rounded.addRoundedRect(QRectF(0, 0, *PICTURE), 4, 4)
         painter.setClipPath(rounded)
         painter.fillRect(0, 0, *PICTURE, PICTURE_GREY)
-        if row in self._pictures:
-            painter.drawImage(QRectF(0, 0, *PICTURE), self._pictures[row])
+        if row in self.pictures:
+            painter.drawImage(QRectF(0, 0, *PICTURE), self.pictures[row])
         strip = swatch(self._presets[row].transfer, PICTURE[0], _SWATCH + 4).pixmap(PICTURE[0], _SWATCH + 4)
         painter.drawPixmap(QRectF(0, PICTURE[1] - _SWATCH, PICTURE[0], _SWATCH), strip, QRectF(strip.rect()))
         painter.end()

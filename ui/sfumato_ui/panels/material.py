@@ -243,7 +243,7 @@ class MaterialPage(Page):
     # -- own presets ------------------------------------------------------------------------------
     def _ask_save(self) -> None:
         self._answer = "save"
-        self.ask.ask_name("Save", "", self.own.complaint)
+        self.ask.ask_name("Save", "", self._complaint)
 
     def _ask_rename(self) -> None:
         row = self._current()
@@ -251,11 +251,15 @@ class MaterialPage(Page):
             assert row is not None
             old = self._presets[row].name
             self._answer = "rename"
+            same = old.lower()
             self.ask.ask_name(
-                "Rename",
-                old,
-                lambda new: "" if new.strip().lower() == old.lower() else self.own.complaint(new),
+                "Rename", old, lambda new: "" if new.strip().lower() == same else self._complaint(new)
             )
+
+    def _complaint(self, name: str) -> str:
+        """Return what is wrong with the name of an own preset, or nothing."""
+        taken = (p.name.lower() for p in self._presets)
+        return self.own.complaint(name) or ("A preset has this name" if name.strip().lower() in taken else "")
 
     def _ask_delete(self) -> None:
         row = self._current()
