@@ -29,7 +29,8 @@ class ClipTool(HandleTool):
         scene = self._editor.scene
         if scene.volume is None:
             return []
-        return planes.handles(scene, view) + crop.handles(scene, view)
+        held = self._grip if self.taken and isinstance(self._grip, crop.FaceGrip) else None
+        return planes.handles(scene, view) + crop.handles(scene, view, held)
 
     def begin(self, handle: Handle, view: PictureView, at: Place) -> str:
         """Take a face or a plane; the plane is selected."""
@@ -87,7 +88,7 @@ class ClipTool(HandleTool):
                 segment = view.segment(corners[j - 1], corners[j])
                 if segment is not None:
                     draw_line(painter, *segment, strong=i == self._clips.selected)
-            middle = view.place(planes.pivot(scene, plane))
+            middle = view.place(planes.pivot(scene, view, plane))
             if middle is not None:
                 draw_line(painter, middle, planes.arm_place(view, middle, plane))
         self.paint_handles(painter, view)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import combinations
 
 import numpy as np
@@ -16,6 +17,7 @@ from .view import PictureView, Place
 #: Places on a face that looks at the eye (low face, high face), as fractions of its sides: before and behind
 #: each other as the two faces are, their handles must not be.
 _ASIDE = (0.25, 0.75)
+_GRID = tuple((u / 10, v / 10) for u in range(1, 10) for v in range(1, 10))
 
 
 def edges(scene: Scene, view: PictureView) -> list[tuple[Place, Place]]:
@@ -28,15 +30,17 @@ def edges(scene: Scene, view: PictureView) -> list[tuple[Place, Place]]:
     return [segment for segment in found if segment is not None]
 
 
-def handles(scene: Scene, view: PictureView) -> list[Handle]:
-    """Return the handles of the six faces, the nearest first."""
+def handles(scene: Scene, view: PictureView, held: FaceGrip | None = None) -> list[Handle]:
+    """Return the handles of the six faces, the nearest first; a held one stays at its place on the face."""
     volume = scene.volume
     assert volume is not None
     made: list[tuple[float, Handle]] = []
     for axis in axes_of(volume):
         low_mm, high_mm = axis.to_mm(scene.crop.low[axis.index], scene.crop.high[axis.index])
         for high in (False, True):
-            point = face_point(scene, view, axis, high)
+            key = f"crop.{axis.index}.{int(high)}"
+            spot = held.spot if held is not None and held.key == key else face_spot(scene, view, axis, high)
+            point = on_face(scene, axis, high, *spot)
             place = view.place(point)
             if place is None:
                 continue
@@ -48,7 +52,7 @@ def handles(scene: Scene, view: PictureView) -> list[Handle]:
             made.append(
                 (
                     depth,
-                    Handle(f"crop.{axis.index}.{int(high)}", name, place, along(view, point, axis.direction)),
+                    Handle(key, name, place, along(view, point, axis.direction)),
                 )
             )
     return [handle for _, handle in sorted(made, key=lambda pair: pair[0])]
@@ -66,17 +70,25 @@ def along(view: PictureView, point: np.ndarray, axis: np.ndarray) -> Place:
     return (b[0] - a[0]) / length, (a[1] - b[1]) / length
 
 
-def face_point(scene: Scene, view: PictureView, axis: Axis, high: bool) -> np.ndarray:
-    """Return where on a face, in world mm, its handle sits: in the middle unless the face looks at the eye."""
+def face_spot(scene: Scene, view: PictureView, axis: Axis, high: bool) -> Place:
+    """Return where on a face, in fractions of its sides, its handle sits.
+
+    In the middle, aside if the face looks at the eye, and elsewhere on the face if that is outside the picture.
+    """
+    middle = on_face(scene, axis, high, 0.5, 0.5)
+    share = _ASIDE[high] if view.faces(middle, axis.direction) else 0.5
+    if view.shows(on_face(scene, axis, high, share, share)):
+        return share, share
+    others = sorted(_GRID, key=lambda uv: math.hypot(uv[0] - share, uv[1] - share))
+    return next((uv for uv in others if view.shows(on_face(scene, axis, high, *uv))), (share, share))
+
+
+def on_face(scene: Scene, axis: Axis, high: bool, u: float, v: float) -> np.ndarray:
+    """Return a point of a face in world mm, by fractions of the face's two sides."""
     volume, crop = scene.volume, scene.crop
     assert volume is not None
-    at = (np.asarray(crop.low) + np.asarray(crop.high)) / 2
-    at[axis.index] = (crop.low, crop.high)[high][axis.index]
-    if view.faces(_to_world(volume, at), axis.direction):
-        share = _ASIDE[high]
-        others = [i for i in range(3) if i != axis.index]
-        at[others] = [crop.low[i] + share * (crop.high[i] - crop.low[i]) for i in others]
-    return _to_world(volume, at)
+    share = np.insert(np.array([u, v]), axis.index, float(high))
+    return _to_world(volume, np.asarray(crop.low) + share * np.subtract(crop.high, crop.low))
 
 
 def _to_world(volume: Volume, at: np.ndarray) -> np.ndarray:
@@ -89,10 +101,12 @@ class FaceGrip:
 
     def __init__(self, scene: Scene, view: PictureView, handle: Handle, at: Place) -> None:
         assert scene.volume is not None
+        self.key = handle.key
         _, index, high = handle.key.split(".")
         self._axis, self._high, self._start = Axis(scene.volume, int(index)), bool(int(high)), at
         self._crop = scene.crop
-        self._point = face_point(scene, view, self._axis, self._high)
+        self.spot = face_spot(scene, view, self._axis, self._high)
+        self._point = on_face(scene, self._axis, self._high, *self.spot)
 
     def moved(self, view: PictureView, at: Place) -> CropBox:
         """Return the crop box for a place of the pointer."""

@@ -18,6 +18,7 @@ from .view import PictureView, Place
 
 #: Length in pixels of the arm whose end tilts a plane, and the least at which its handle is drawn.
 ARM, LEAST_ARM = 64.0, 34.0
+_OUTWARDS = (0.25, 0.5, 0.75, 0.95)
 #: How far past the rim, in arms, the hand swings the arm to the other side.
 OVER_THE_RIM = 1.15
 
@@ -42,12 +43,18 @@ def outline(scene: Scene, plane: ClipPlane) -> np.ndarray:
     return np.asarray(points[np.argsort(angles)])
 
 
-def pivot(scene: Scene, plane: ClipPlane) -> np.ndarray:
-    """Return the middle of a plane's outline, or where it is nearest to the volume's middle."""
+def pivot(scene: Scene, view: PictureView, plane: ClipPlane) -> np.ndarray:
+    """Return where a plane's handle sits and it turns about.
+
+    The middle of its outline, or towards a corner of it if that is outside the picture; where the plane
+    cuts nothing, its point nearest to the volume's middle.
+    """
     assert scene.volume is not None
     corners = outline(scene, plane)
     if len(corners):
-        return np.asarray(corners.mean(axis=0))
+        middle = np.asarray(corners.mean(axis=0))
+        others = (middle + share * (corner - middle) for share in _OUTWARDS for corner in corners)
+        return middle if view.shows(middle) else next(filter(view.shows, others), middle)
     normal, centre = unit(plane.normal), np.asarray(scene.volume.center)
     return np.asarray(centre + normal * float(normal @ (np.asarray(plane.point) - centre)))
 
@@ -56,7 +63,7 @@ def handles(scene: Scene, view: PictureView) -> list[Handle]:
     """Return the two handles of each plane that cuts."""
     made = []
     for i, plane in enumerate(scene.clip):
-        middle = pivot(scene, plane)
+        middle = pivot(scene, view, plane)
         place = view.place(middle)
         if not plane.enabled or place is None:
             continue
@@ -91,7 +98,7 @@ class MoveGrip:
 
     def __init__(self, scene: Scene, view: PictureView, index: int, at: Place) -> None:
         assert scene.volume is not None
-        self._plane, self._start, self._pivot = scene.clip[index], at, pivot(scene, scene.clip[index])
+        self._plane, self._start, self._pivot = scene.clip[index], at, pivot(scene, view, scene.clip[index])
         self._normal = unit(self._plane.normal)
         centre = np.asarray(scene.volume.center)
         self._offset = float(self._normal @ (np.asarray(self._plane.point) - centre))
@@ -112,7 +119,7 @@ class TiltGrip:
     """A plane in the hand that tilts it: the end of the arm moves on a sphere, as wide as the arm is long."""
 
     def __init__(self, scene: Scene, view: PictureView, index: int, at: Place) -> None:
-        self._plane, self._pivot = scene.clip[index], pivot(scene, scene.clip[index])
+        self._plane, self._pivot = scene.clip[index], pivot(scene, view, scene.clip[index])
         tip = arm(view, self._plane)
         self._before = 1.0 if tip[2] >= 0 else -1.0
         self._outside = False
@@ -151,4 +158,4 @@ def tilted_by(scene: Scene, view: PictureView, index: int, right: float, up: flo
     a, b = math.radians(right), math.radians(up)
     x, z = x * math.cos(a) + z * math.sin(a), z * math.cos(a) - x * math.sin(a)
     y, z = y * math.cos(b) + z * math.sin(b), z * math.cos(b) - y * math.sin(b)
-    return turned(plane, pivot(scene, plane), view, np.array([x, y, z]))
+    return turned(plane, pivot(scene, view, plane), view, np.array([x, y, z]))

@@ -13,6 +13,10 @@ Place = tuple[float, float]
 
 #: Sine of the angle to the line of sight below which an axis counts as pointing at the eye (15 degrees).
 FACING = 0.26
+#: Distance from the picture's edge in pixels within which a handle could not be taken.
+MARGIN = 14.0
+#: What counts as endlessly far, in mm.
+FARTHEST = 1e9
 #: Nearest depth at which a point is drawn, as a fraction of the distance to the focal point.
 NEAR = 0.01
 
@@ -37,6 +41,15 @@ class PictureView:
         x = float(arm @ np.asarray(basis.right)) / (half_x * scale) - camera.window_center[0]
         y = float(arm @ np.asarray(basis.up)) / (half_y * scale) - camera.window_center[1]
         return (x + 1) / 2 * self.width, (1 - y) / 2 * self.height
+
+    def shows(self, point: np.ndarray) -> bool:
+        """Tell whether a world point lies in the picture, clear of its edge."""
+        place = self.place(point)
+        return (
+            place is not None
+            and MARGIN <= place[0] <= self.width - MARGIN
+            and MARGIN <= place[1] <= self.height - MARGIN
+        )
 
     def segment(self, a: np.ndarray, b: np.ndarray) -> tuple[Place, Place] | None:
         """Return where the part of a segment that is before the eye lies."""
@@ -97,4 +110,8 @@ class PictureView:
         start, along = self.ray(place)
         between = start - origin
         cosine = float(axis @ along)
-        return (float(axis @ between) - cosine * float(along @ between)) / max(1 - cosine**2, 1e-6)
+        apart = max(1 - cosine**2, 1e-6)
+        if (cosine * float(axis @ between) - float(along @ between)) / apart <= 0:
+            # Beyond the line's vanishing point: as far as one can see.
+            return FARTHEST if cosine > 0 else -FARTHEST
+        return (float(axis @ between) - cosine * float(along @ between)) / apart
