@@ -140,11 +140,12 @@ class RawDialog(QDialog):
     @property
     def form(self) -> RawGuess:
         """How the file is to be read."""
-        name = self.type.currentText()
-        swapped = self.big.isChecked() and np.dtype(name).itemsize > 1
+        plain = np.dtype(self.type.currentText())
+        swapped = self.big.isChecked() and plain.itemsize > 1
+        name = plain.newbyteorder(">").str if swapped else plain.name
         x, y, z = (box.value() for box in self.dims)
         sx, sy, sz = (box.value() for box in self.spacing)
-        return RawGuess((x, y, z), (">" if swapped else "") + name, (sx, sy, sz), self.offset.value())
+        return RawGuess((x, y, z), name, (sx, sy, sz), self.offset.value())
 
     def keep_form(self) -> None:
         """Write the description beside the file, if that is wished.
@@ -173,8 +174,9 @@ class RawDialog(QDialog):
             box.setValue(count)
         for length, step in zip(self.spacing, guess.spacing, strict=True):
             length.setValue(step)
-        self.type.setCurrentText(guess.dtype.lstrip("<>"))
-        self.big.setChecked(guess.dtype.startswith(">"))
+        dtype = np.dtype(guess.dtype)
+        self.type.setCurrentText(dtype.name)
+        self.big.setChecked(dtype.byteorder == ">")
         self.offset.setValue(guess.offset)
         self._filling = False
         self._on_edited()

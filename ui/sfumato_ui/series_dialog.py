@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from qtpy.QtCore import QSize, Qt, Signal
-from qtpy.QtGui import QColor, QIcon, QImage, QPixmap
+from qtpy.QtGui import QColor, QIcon, QImage, QPainter, QPixmap
 from qtpy.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -27,6 +27,8 @@ from .theme import current_theme
 
 #: Side of a thumbnail in pixels.
 THUMBNAIL = 72
+#: With fewer slices a series is a survey (localizer), not what a folder was opened for.
+FEWEST_SLICES = 5
 _COLUMNS = ("Series", "Images", "Pixels", "Spacing (mm)")
 
 
@@ -96,7 +98,7 @@ class SeriesDialog(QDialog):
             if one.key == key:
                 ratio = self.devicePixelRatioF()
                 image = slice_image(plane, one.spacing[:2], round(THUMBNAIL * ratio))
-                self.list.topLevelItem(i).setIcon(0, QIcon(_on_square(image, ratio)))
+                self.list.topLevelItem(i).setIcon(0, _icon(_on_square(image, ratio)))
 
 
 def is_volume(series: Any) -> bool:
@@ -105,8 +107,9 @@ def is_volume(series: Any) -> bool:
 
 
 def largest_volume(series: Sequence[Any]) -> int:
-    """Return which series has most voxels; single images, however large, come last."""
-    return max(range(len(series)), key=lambda i: (is_volume(series[i]), _voxels(series[i])))
+    """Return which series has most voxels; a few slices, however large, come after it, single images last."""
+    ranks = [(is_volume(s), s.count >= FEWEST_SLICES, _voxels(s)) for s in series]
+    return max(range(len(series)), key=ranks.__getitem__)
 
 
 def _voxels(series: Any) -> int:
@@ -140,7 +143,7 @@ def _row(series: Any) -> QTreeWidgetItem:
     row = QTreeWidgetItem([name, str(series.count), f"{x} × {y}", spacing if volume else "–"])
     empty = QPixmap(THUMBNAIL, THUMBNAIL)
     empty.fill(QColor(current_theme().separator))
-    row.setIcon(0, QIcon(empty))
+    row.setIcon(0, _icon(empty))
     row.setToolTip(0, series.label)
     for column in (1, 2, 3):
         row.setTextAlignment(column, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -150,10 +153,15 @@ def _row(series: Any) -> QTreeWidgetItem:
     return row
 
 
+def _icon(pixmap: QPixmap) -> QIcon:
+    """Return an icon that keeps its greys where it is selected."""
+    made = QIcon(pixmap)
+    made.addPixmap(pixmap, QIcon.Mode.Selected)
+    return made
+
+
 def _on_square(image: QImage, ratio: float) -> QPixmap:
     """Return a picture in the middle of a black square, so that all rows are alike."""
-    from qtpy.QtGui import QPainter
-
     side = round(THUMBNAIL * ratio)
     square = QPixmap(side, side)
     square.fill(QColor("black"))

@@ -30,6 +30,7 @@ from .dicom_header import is_dicom
 from .dicom_series import SeriesInfo
 from .finish import finish
 from .formats import SUPPORTED
+from .known import load_known
 from .raw import NeedsDescription, RawGuess
 from .reading import Cancel, LoadCancelled, Progress, Reading, Source, Task
 
@@ -46,6 +47,7 @@ __all__ = [
     "find_series",
     "guess_raw",
     "load",
+    "load_known",
     "load_raw",
     "preview_series",
     "reduce_volume",

@@ -221,4 +221,5 @@ def _from_size(size: int) -> list[RawGuess]:
 
 
 def _name(dtype: np.dtype) -> str:
-    return (">" if dtype.byteorder == ">" else "") + dtype.name
+    # NumPy knows ">i2", but not ">int16".
+    return dtype.str if dtype.byteorder == ">" else dtype.name

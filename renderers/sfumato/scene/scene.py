@@ -297,19 +297,15 @@ def _portable(volume_path: str, scene_path: Path) -> str:
 
 
 def _find_volume(reference: Any, scene_path: Path) -> Volume:
-    from ..io import load
+    from ..io import load_known
 
     if not isinstance(reference, dict) or not isinstance(reference.get("path"), str) or not reference["path"]:
         raise LoadError(
             scene_path, "the scene does not say where its volume is", "open the volume first, then the scene"
         )
     name = reference["path"]
-    volume = load(name if name.startswith("sample:") else scene_path.parent / name)
     wanted = reference.get("hash")
-    if isinstance(wanted, str) and wanted != volume.key:
-        raise LoadError(
-            scene_path.parent / name,
-            "this is not the volume that the scene was made with (its content differs)",
-            "open the volume by itself",
-        )
-    return volume
+    return load_known(
+        name if name.startswith("sample:") else scene_path.parent / name,
+        wanted if isinstance(wanted, str) else None,
+    )
