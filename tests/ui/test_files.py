@@ -15,8 +15,6 @@ from qtpy.QtGui import QDragEnterEvent, QDropEvent
 from qtpy.QtWidgets import QApplication, QDialog, QDialogButtonBox, QFileDialog, QMessageBox, QPushButton
 
 from sfumato import Scene
-from sfumato.export.png import open_png
-from sfumato_ui.dialogs import PictureDialog
 from sfumato_ui.series_dialog import SeriesDialog
 from sfumato_ui.window import MainWindow
 
@@ -144,36 +142,6 @@ def test_loading_can_be_cancelled(window: MainWindow, qtbot: QtBot, tmp_path: Pa
     qtbot.wait(50)
     assert window.editor.scene is scene
     assert not window.messages.isVisible()
-
-
-def test_saving_the_picture(window: MainWindow, hand: Any, qtbot: QtBot, tmp_path: Path) -> None:
-    from PIL import Image
-
-    hand.press(Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
-    dialog = dialog_of(window, qtbot, PictureDialog)
-    assert dialog.size_in_pixels == window.viewport.pixel_size
-    dialog.wide.selectAll()
-    qtbot.keyClicks(dialog.wide, "320")
-    dialog.tall.selectAll()
-    qtbot.keyClicks(dialog.tall, "200")
-    qtbot.keyClick(dialog, Qt.Key.Key_Return)
-    target = tmp_path / "picture.png"
-    type_file_name(dialog_of(window, qtbot, QFileDialog), qtbot, target)
-    qtbot.waitUntil(lambda: window.messages.kind in ("notice", "error"), timeout=90_000)
-    assert window.messages.text == f"Saved {target}"
-    with Image.open(target) as picture:
-        assert picture.size == (320, 200)
-        assert np.asarray(picture)[..., 3].min() == 255, "what is saved is what is seen, the grey too"
-    again = open_png(target, volume=window.editor.scene.volume)
-    assert again == window.editor.scene
-
-
-def test_a_picture_that_cannot_be_written_is_a_message(
-    window: MainWindow, qtbot: QtBot, tmp_path: Path
-) -> None:
-    window.files.save_picture(str(tmp_path / "missing" / "x.png"), (64, 64))
-    qtbot.waitUntil(lambda: window.messages.kind == "error", timeout=60_000)
-    assert "missing" in window.messages.text
 
 
 def test_saving_the_scene_and_opening_it_again(

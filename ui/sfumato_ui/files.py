@@ -9,24 +9,15 @@ from qtpy.QtCore import QObject, Signal
 from qtpy.QtWidgets import QDialog, QFileDialog, QWidget
 
 from sfumato import Scene, SfumatoError
-from sfumato.export.png import write_png
 
 from .autosave import Slot
-from .dialogs import PictureDialog, ask_about_unsaved
+from .dialogs import ask_about_unsaved
 from .editing import Editor
 from .loading import SCENE_SUFFIX, Loader, Wish
 from .messages import MessageBar
 from .raw_dialog import RawDialog
 from .recent import last_folder, remember
 from .series_dialog import SeriesDialog
-from .theme import PICTURE_GREY
-from .viewport import Viewport
-from .worker import RenderWorker, SaveRequest
-
-#: Linear value of the grey around the picture.
-_GREY = ((int(PICTURE_GREY[1:3], 16) / 255 + 0.055) / 1.055) ** 2.4
-#: Jittered frames of a saved picture.
-SAVED_FRAMES = 8
 
 
 class Files(QObject):
@@ -39,19 +30,16 @@ class Files(QObject):
     #: The scene was saved.
     scene_saved = Signal()
 
-    def __init__(
-        self, window: QWidget, editor: Editor, viewport: Viewport, worker: RenderWorker, bar: MessageBar
-    ) -> None:
+    def __init__(self, window: QWidget, editor: Editor, bar: MessageBar) -> None:
         super().__init__(window)
-        self._window, self._editor, self._viewport = window, editor, viewport
-        self._worker, self._bar = worker, bar
+        self._window, self._editor, self._bar = window, editor, bar
         self.loader = Loader()
         self.scene_path = ""
         self._wish = Wish("")
         self._connect()
 
     def _connect(self) -> None:
-        loader, worker = self.loader, self._worker
+        loader = self.loader
         loader.progress.connect(
             lambda done, text: self._bar.show_progress(f"Opening {self._wish.name}… {text}", done)
         )
@@ -61,14 +49,10 @@ class Files(QObject):
         loader.reduced.connect(self._on_reduced)
         loader.failed.connect(self._on_failed)
         loader.cancelled.connect(lambda: self._bar.clear("progress"))
-        worker.save_progress.connect(lambda done: self._bar.show_progress("Rendering the picture…", done))
-        worker.saved.connect(lambda path: self._bar.show_notice(f"Saved {path}"))
-        worker.save_cancelled.connect(lambda: self._bar.clear("progress"))
         self._bar.cancelled.connect(self._cancel)
 
     def _cancel(self) -> None:
         self.loader.cancel()
-        self._worker.cancel_save()
         self._bar.clear("progress")
 
     # -- opening ----------------------------------------------------------------------------------
@@ -219,41 +203,3 @@ class Files(QObject):
         self._bar.show_notice(f"Saved {path}")
         self.scene_saved.emit()
         return True
-
-    # -- the picture ------------------------------------------------------------------------------
-    def ask_to_save_picture(self) -> None:
-        """Let the user choose size and file of the picture."""
-        dialog = PictureDialog(self._viewport.pixel_size, self._window)
-        dialog.accepted.connect(
-            lambda: self._ask_for_picture_file(dialog.size_in_pixels, dialog.transparent.isChecked())
-        )
-        dialog.finished.connect(dialog.deleteLater)
-        dialog.open()
-
-    def _ask_for_picture_file(self, size: tuple[int, int], transparent: bool) -> None:
-        dialog = QFileDialog(
-            self._window,
-            "Save the picture",
-            str(Path.home() / f"{self.name or 'picture'}.png"),
-            "PNG (*.png)",
-        )
-        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        dialog.setDefaultSuffix("png")
-        dialog.fileSelected.connect(lambda path: self.save_picture(path, size, transparent))
-        dialog.finished.connect(dialog.deleteLater)
-        dialog.open()
-
-    def save_picture(self, path: str, size: tuple[int, int], transparent: bool = False) -> None:
-        """Render the scene in full at a size in pixels and write it as PNG."""
-        scene = self._editor.scene
-        if transparent:
-            drawn = scene.with_(background=(0.0, 0.0, 0.0, 0.0))
-        elif scene.background[3] == 0:
-            # What is saved is what is seen: without a background, the picture stands on the window's grey.
-            drawn = scene.with_(background=(_GREY, _GREY, _GREY, 1.0))
-        else:
-            drawn = scene
-        self._bar.show_progress("Rendering the picture…", 0.0)
-        self._worker.save(
-            SaveRequest(drawn, size, SAVED_FRAMES, lambda picture: write_png(path, picture, scene), path)
-        )

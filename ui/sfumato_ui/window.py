@@ -30,6 +30,7 @@ from .autosave import Autosave
 from .bars import ToolStrip, TopBar
 from .driver import ViewDriver
 from .editing import Editor
+from .exporting import Exporter
 from .files import Files
 from .loading import Loader
 from .messages import MessageBar
@@ -70,7 +71,10 @@ class MainWindow(QMainWindow):
         self.worker = RenderWorker()
         self.thumbnails = Thumbnails(self.worker, self)
         self.driver = ViewDriver(self.editor, self.viewport, self.worker)
-        self.files = Files(self, self.editor, self.viewport, self.worker, self.messages)
+        self.files = Files(self, self.editor, self.messages)
+        self.exporter = Exporter(
+            self, self.editor, self.viewport, self.worker, self.messages, lambda: self.files.name
+        )
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
         self.light_page, self.material_page = LightPage(self.editor), MaterialPage(self.editor)
         self.material_page.use_thumbnails(self.thumbnails)
@@ -123,7 +127,7 @@ class MainWindow(QMainWindow):
         self.top.sample_wanted.connect(self.files.open)
         self.top.recent.chosen.connect(self.files.open)
         self.top.save.clicked.connect(lambda: self.files.save_scene())
-        self.top.picture.clicked.connect(self.files.ask_to_save_picture)
+        self.top.picture.clicked.connect(self.exporter.ask)
         self.top.unlit.connect(self.driver.set_unlit)
         self.strip.chosen.connect(self._choose_tool)
         self.strip.fit.clicked.connect(lambda: self.look(""))
@@ -154,7 +158,8 @@ class MainWindow(QMainWindow):
             "Ctrl+Shift+O": self.files.ask_to_open_folder,
             "Ctrl+S": lambda: self.files.save_scene(),
             "Ctrl+Shift+S": lambda: self.files.ask_to_save_scene(),
-            "Ctrl+E": self.files.ask_to_save_picture,
+            "Ctrl+E": self.exporter.ask,
+            "Ctrl+Shift+C": self.exporter.copy,
             "Ctrl+Z": self.editor.undo,
             "Ctrl+Shift+Z": self.editor.redo,
             "Ctrl+Y": self.editor.redo,

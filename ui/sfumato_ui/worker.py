@@ -10,8 +10,8 @@ from __future__ import annotations
 import threading
 import time
 import traceback
-from collections.abc import Callable, Hashable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Generator, Hashable, Iterator
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,6 +20,7 @@ from qtpy.QtCore import QObject, QThread, Signal
 from qtpy.QtGui import QImage
 
 from sfumato import GpuError, Scene, SfumatoError
+from sfumato.export.tiles import Guest
 from sfumato.techniques.frame import FULL, Quality
 
 #: Jittered frames that a still picture accumulates.
@@ -70,12 +71,13 @@ class ViewRequest:
 
 @dataclass(frozen=True)
 class SaveRequest:
-    """A picture at full quality is to be handed to ``write`` on the worker's thread."""
+    """A file is to be drawn and written on the worker's thread.
 
-    scene: Scene
-    size: tuple[int, int]
-    frames: int
-    write: Callable[[np.ndarray], None]
+    ``work`` is given the renderer and a guest to whom it lends it in between; it yields its progress (0 to 1)
+    and ends at once when it is closed. ``done`` names the file.
+    """
+
+    work: Callable[[Any, Guest], Generator[float, None, None]]
     done: str
 
 
@@ -101,6 +103,8 @@ class RenderWorker(QObject):
     saved = Signal(str)
     save_progress = Signal(float)
     save_cancelled = Signal()
+    #: A file could not be written: one line; the view is not affected.
+    save_failed = Signal(str)
     #: A thumbnail is drawn (its request, the QImage).
     thumbnail = Signal(object, object)
 
@@ -192,9 +196,10 @@ class RenderWorker(QObject):
         try:
             self._serve_twice(save, view, thumbnail)
         except Exception as error:
-            if not self._stopping:
-                # A smaller view helps no picture that is being saved.
-                self.failed.emit(one_line(error), _remedy(error) if save is None else "")
+            if not self._stopping and save is not None:
+                self.save_failed.emit(one_line(error))
+            elif not self._stopping:
+                self.failed.emit(one_line(error), _remedy(error))
 
     def _serve_twice(
         self, save: SaveRequest | None, view: ViewRequest | None, thumbnail: ThumbnailRequest | None
@@ -303,15 +308,46 @@ class RenderWorker(QObject):
             self._rung = max(self._rung - 1, 0)
 
     def _write(self, renderer: Any, request: SaveRequest) -> None:
-        with _accumulation(renderer, request.scene, request.size, FULL) as accumulation:
-            for index in range(request.frames):
-                for done in accumulation.add_frame():
-                    if self._stopping or self._cancel_save:
-                        self.save_cancelled.emit()
-                        return
-                    self.save_progress.emit((index + done) / request.frames)
-            request.write(accumulation.picture())
+        with closing(request.work(renderer, _ViewsFirst(self, renderer))) as pieces:
+            for done in pieces:
+                if self._stopping or self._cancel_save:
+                    self.save_cancelled.emit()
+                    return
+                self.save_progress.emit(done)
         self.saved.emit(request.done)
+
+    def view_waits(self) -> bool:
+        """Tell, on the thread, whether the window wants to see something else."""
+        return self._view is not None and not (self._stopping or self._cancel_save)
+
+    def draw_waiting_view(self, renderer: Any) -> None:
+        """Draw, on the thread, what the window wants to see, while a file is being drawn."""
+        with self._wake:
+            view, self._view = self._view, None
+            self._settled = False
+        if view is None:
+            return
+        try:
+            self._draw(renderer, view)
+        except GpuError as error:
+            if error.remedy == "new renderer":
+                raise
+            self.failed.emit(one_line(error), _remedy(error))
+
+
+class _ViewsFirst:
+    """Lends the renderer of a file that is being drawn to the window: a hand that moves must see pictures."""
+
+    def __init__(self, worker: RenderWorker, renderer: Any) -> None:
+        self._worker, self._renderer = worker, renderer
+
+    def waiting(self) -> bool:
+        """Tell whether the window wants to see something else."""
+        return self._worker.view_waits()
+
+    def serve(self) -> None:
+        """Draw it."""
+        self._worker.draw_waiting_view(self._renderer)
 
 
 @contextmanager

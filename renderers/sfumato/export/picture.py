@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import os
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -134,7 +134,7 @@ def write_picture(
     guest: Guest | None = None,
     tile_side: int = TILE_SIDE,
     tile_pixels: int = TILE_PIXELS,
-) -> Iterator[float]:
+) -> Generator[float, None, None]:
     """Draw a scene to a PNG or TIFF file, yielding progress (0 to 1); stop iterating to cancel it.
 
     The file takes its place only when it is whole; until then nothing is there, and nothing is left.
@@ -187,7 +187,7 @@ def _draw(
     stream: PictureStream,
     bar: ScaleBar | None,
     guest: Guest | None,
-) -> Iterator[float]:
+) -> Generator[float, None, None]:
     """Draw band after band into a stream."""
     total, done = spec.size[0] * spec.size[1], 0
     for band in bands:

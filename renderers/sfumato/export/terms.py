@@ -115,7 +115,9 @@ def _shining(scene: Scene) -> list[tuple[int, Light]]:
 
 def _emits(scene: Scene) -> bool:
     transfer = scene.transfer
-    return transfer is not None and any(any(part.emission) for part in (*transfer.points, *transfer.regions))
+    if transfer is None:
+        return False
+    return any(any(p.emission) for p in transfer.points) or any(any(r.emission) for r in transfer.regions)
 
 
 def _without_emission(transfer: Any) -> Any:
