@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from sfumato import TransferFunction, Volume
 
 #: Share of the voxels, at either end, that the first view may leave out.
 OUTSIDE = 1e-4
+#: Bins that lie between two values of scaled whole numbers at most.
+_GAP = 8
 #: Nothing in a body lies below air; scanners fill the corners with less.
 LOWEST_HU = -1050.0
 
@@ -23,7 +26,7 @@ class Histogram:
 
 
 def log_histogram(volume: Volume) -> Histogram:
-    """Return a volume's histogram; whole numbers that fall unevenly into the bins make no comb."""
+    """Return a volume's histogram; values that fall unevenly into the bins make no comb."""
     counts, edges = volume.histogram
     density, values = counts.astype(float), (edges[1:] + edges[:-1]) / 2
     if volume.data.dtype.kind in "ui":
@@ -32,6 +35,12 @@ def log_histogram(volume: Volume) -> Histogram:
         inside = np.diff(first)
         kept = inside > 0
         density, values = density[kept] / inside[kept], values[kept]
+    else:
+        # Scaled whole numbers: bins between two of them are empty, and say nothing.
+        kept = (density > 0) | (maximum_filter1d(density, 2 * _GAP + 1) == 0)
+        density, values = density[kept], values[kept]
+    # Where two of them share a bin: a ripple.
+    density = np.convolve(np.pad(density, 1, mode="edge"), (0.25, 0.5, 0.25), mode="valid")
     heights = np.log1p(density)
     return Histogram(values, heights / max(1e-9, float(heights.max())))
 

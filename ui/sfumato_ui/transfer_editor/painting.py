@@ -112,7 +112,7 @@ def draw_axis(
         painter.drawText(QPointF(right, axis.top() + metrics.ascent()), unit)
         right -= 6
     widest = max(metrics.horizontalAdvance(text_of(v - zero, decimals)) for v in (scale.low, scale.high))
-    for value in ticks(scale.low - zero, scale.high - zero, int(axis.width() / (widest + 16))):
+    for value in ticks(scale.low - zero, scale.high - zero, int(axis.width() / (widest + 10))):
         text, x = text_of(value, decimals), scale.x(value + zero)
         half = metrics.horizontalAdvance(text) / 2
         painter.drawLine(QPointF(x, areas.box.bottom() + 1), QPointF(x, areas.box.bottom() + 4))

@@ -11,27 +11,21 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-from qtpy.QtCore import QEvent, QPointF, QSize, Qt, Signal
-from qtpy.QtGui import QFontMetricsF, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
-from qtpy.QtWidgets import QSizePolicy, QWidget
+from qtpy.QtCore import QEvent, QPointF, Qt
+from qtpy.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 
-from sfumato import Scene, TransferFunction, TransferPoint, Volume
+from sfumato import TransferFunction, TransferPoint
 from sfumato.scene import transfer_edit
-from sfumato.scene.presets.values import hounsfield_zero
 
-from ..color_button import to_srgb
 from ..editing import Editor
-from ..theme import current_theme
-from . import histogram, painting, tissue
-from .scale import Scale, decimals_for, nudge
+from . import painting
+from .canvas import TransferCanvas
+from .scale import nudge
 
-#: Hit radius of a point and of the curve in pixels.
-HIT, HIT_CURVE = 12.0, 7.0
+#: Hit distance of the curve in pixels.
+HIT_CURVE = 7.0
 #: Pixels up or down before a shift-drag changes the width too.
 DEAD = 8.0
-#: Least part of the whole range that the view can show.
-CLOSEST = 1 / 400
 LEVEL = "Move the transfer function"
 TIP = (
     "<p>Drag a point. Click on the curve to add one, or double-click anywhere; Del removes it. "
@@ -41,108 +35,14 @@ TIP = (
 )
 
 
-class TransferPlot(QWidget):
-    """Shows and edits the points of the scene's function; which one is selected is its own affair."""
-
-    #: Another point was selected, or none (-1).
-    point_selected = Signal(int)
+class TransferPlot(TransferCanvas):
+    """Edits the points of the scene's function."""
 
     def __init__(self, editor: Editor) -> None:
-        super().__init__()
-        self._editor = editor
-        self._volume: Volume | None = None
-        self._histogram = histogram.Histogram(np.zeros(0), np.zeros(0))
-        #: Value that means 0 HU, if the values are Hounsfield units.
-        self.zero: float | None = None
-        self._range, self._whole = (0.0, 1.0), (0.0, 1.0)
-        self._selected = -1
-        self._hover: QPointF | None = None
-        self._drag: Callable[[QMouseEvent], None] | None = None
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        super().__init__(editor)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)
-        self.setAccessibleName("Transfer function")
         self.setToolTip(TIP)
-
-    def sizeHint(self) -> QSize:
-        """Be a low box, taller with larger text."""
-        return QSize(240, 152 + 3 * self.fontMetrics().height())
-
-    # -- state ------------------------------------------------------------------------------------
-    @property
-    def transfer(self) -> TransferFunction | None:
-        """The function, if it has points to drag."""
-        transfer = self._editor.scene.transfer
-        return transfer if transfer is not None and not transfer.regions else None
-
-    @property
-    def selected(self) -> int:
-        """Index of the selected point, or -1."""
-        count = len(self.transfer.points) if self.transfer is not None else 0
-        return min(self._selected, count - 1)
-
-    @property
-    def scale(self) -> Scale:
-        """Where values and opacities lie now."""
-        return Scale(self._areas().plot, *self._range)
-
-    @property
-    def unit(self) -> str:
-        """Unit of the values that are shown."""
-        return "HU" if self.zero is not None else ""
-
-    @property
-    def decimals(self) -> int:
-        """How many decimals the values have."""
-        whole = self._volume is not None and self._volume.data.dtype.kind in "ui"
-        return 0 if whole else decimals_for(self._whole[1] - self._whole[0])
-
-    def show_scene(self, scene: Scene) -> None:
-        """Show a scene's function, and its volume's values behind it."""
-        if scene.volume is not self._volume:
-            self._volume = scene.volume
-            self._show_volume(scene)
-        if scene.volume is not None:
-            self._whole = histogram.whole_range(scene.volume, scene.transfer)
-        self._describe()
-        self.update()
-
-    def _show_volume(self, scene: Scene) -> None:
-        self._selected = -1
-        if scene.volume is None:
-            return
-        self.zero = hounsfield_zero(scene.volume)
-        self._histogram = histogram.log_histogram(scene.volume)
-        self._range = histogram.first_range(scene.volume, scene.transfer, self.zero)
-
-    def show_all(self) -> None:
-        """Zoom out to the first view."""
-        scene = self._editor.scene
-        if scene.volume is not None:
-            self._range = histogram.first_range(scene.volume, scene.transfer, self.zero)
-            self.update()
-
-    def select(self, index: int) -> None:
-        """Select a point by its index, or none (-1)."""
-        self._selected = index
-        self._describe()
-        self.point_selected.emit(self.selected)
-        self.update()
-
-    def _describe(self) -> None:
-        transfer, index = self.transfer, self.selected
-        if transfer is None or index < 0:
-            self.setAccessibleDescription("No point is selected")
-            return
-        text = self._told(transfer.points[index].value, transfer.points[index].opacity)
-        self.setAccessibleDescription(f"Point {index + 1} of {len(transfer.points)}: {text}")
-
-    def _told(self, value: float, opacity: float) -> str:
-        """Return value, opacity and the usual tissue in words."""
-        shown = value - (self.zero or 0.0)
-        words = [f"{painting.text_of(shown, self.decimals)} {self.unit}".strip(), f"{100 * opacity:.3g} %"]
-        name = tissue.tissue_at(shown) if self.zero is not None else ""
-        return "   ".join([*words, name] if name else words)
 
     # -- edits ------------------------------------------------------------------------------------
     def change_point(self, label: str, merge: bool = True, /, **fields: object) -> None:
@@ -194,25 +94,6 @@ class TransferPlot(QWidget):
             )
             self._apply(LEVEL, changed, self.selected, True)
 
-    # -- view -------------------------------------------------------------------------------------
-    def zoom(self, factor: float, about: float) -> None:
-        """Show a factor less of the values, with one of them staying where it is."""
-        low, high = self._range
-        whole = self._whole[1] - self._whole[0]
-        factor = min(max(factor, (high - low) / whole), (high - low) / (whole * CLOSEST))
-        self._show_range(about - (about - low) / factor, about + (high - about) / factor)
-
-    def _show_range(self, low: float, high: float) -> None:
-        """Show these values, moved so that nothing beyond the whole range is in view."""
-        low_end, high_end = min(self._whole[0], self._range[0]), max(self._whole[1], self._range[1])
-        move = max(0.0, low_end - low) - max(0.0, high - high_end)
-        self._range = low + move, high + move
-        self.update()
-
-    @property
-    def _zoomed(self) -> bool:
-        return self._range[1] - self._range[0] < 0.98 * (self._whole[1] - self._whole[0])
-
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom if focused, else let the panel scroll; sideways, or with shift, move the view."""
         if not self.hasFocus() or self._volume is None:
@@ -228,18 +109,6 @@ class TransferPlot(QWidget):
             self.zoom(1.25**notches, self.scale.value(event.position().x()))
 
     # -- mouse ------------------------------------------------------------------------------------
-    def _point_under(self, at: QPointF) -> int:
-        if self.transfer is None:
-            return -1
-        scale = self.scale
-        away = [QPointF(scale.at(p.value, p.opacity) - at) for p in self.transfer.points]
-        distances = [math.hypot(d.x(), d.y()) for d in away]
-        nearest = min(range(len(distances)), key=distances.__getitem__)
-        # Of points on top of each other, the selected one keeps the hand.
-        if 0 <= self.selected < len(distances) and distances[self.selected] <= distances[nearest] + 1e-6:
-            nearest = self.selected
-        return nearest if distances[nearest] <= HIT else -1
-
     def _on_curve(self, at: QPointF) -> bool:
         if self.transfer is None or not self.scale.rect.adjusted(0, -HIT_CURVE, 0, HIT_CURVE).contains(at):
             return False
@@ -397,65 +266,3 @@ class TransferPlot(QWidget):
             event.ignore()
         else:
             act()
-
-    # -- looks ------------------------------------------------------------------------------------
-    def _areas(self) -> painting.Areas:
-        metrics = QFontMetricsF(painting.small(self.font()))
-        gutter = metrics.horizontalAdvance("100 %") + 2
-        return painting.areas_of(self.width(), self.height(), metrics.height(), gutter, self.zero is not None)
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw everything; the cost is that of some hundred points."""
-        theme, areas, scale = current_theme(), self._areas(), self.scale
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setFont(painting.small(self.font()))
-        painting.draw_box(painter, areas, theme, self.hasFocus())
-        transfer = self._editor.scene.transfer
-        if self._volume is None or transfer is None:
-            return
-        painter.save()
-        painter.setClipRect(areas.box.adjusted(2, 2, -2, -2))
-        painting.draw_histogram(painter, scale, self._histogram, theme)
-        painter.restore()
-        painting.draw_axis(painter, areas, scale, theme, self.zero or 0.0, self.unit, self.decimals)
-        if self.zero is not None:
-            painting.draw_tissues(painter, areas, scale, theme, self.zero)
-        if self.transfer is None:
-            text = "This function depends on the gradient too, and has no points. A preset brings them back."
-            painting.draw_message(painter, areas, text, theme)
-            return
-        painting.draw_lines(painter, scale, theme)
-        curve = painting.curve_of(transfer, scale)
-        painting.draw_function(painter, areas, curve, painting.colours_of(transfer, scale), theme)
-        self._draw_points(painter, scale, transfer)
-        self._draw_readout(painter, areas, scale, transfer)
-
-    def _draw_points(self, painter: QPainter, scale: Scale, transfer: TransferFunction) -> None:
-        hot = self._point_under(self._hover) if self._hover is not None and self._drag is None else -1
-        order = sorted(range(len(transfer.points)), key=lambda i: i == self.selected)
-        for i in order:
-            point = transfer.points[i]
-            at = scale.at(point.value, point.opacity)
-            if scale.rect.left() - 1 <= at.x() <= scale.rect.right() + 1:
-                painting.draw_point(
-                    painter,
-                    at,
-                    to_srgb(point.color),
-                    current_theme(),
-                    selected=i == self.selected,
-                    hot=i == hot,
-                )
-
-    def _draw_readout(
-        self, painter: QPainter, areas: painting.Areas, scale: Scale, transfer: TransferFunction
-    ) -> None:
-        if self._hover is None:
-            return
-        if self._drag is not None and self.selected >= 0:
-            point = transfer.points[self.selected]
-        elif scale.rect.left() <= self._hover.x() <= scale.rect.right():
-            point = transfer_edit.point_at(transfer, scale.value(self._hover.x()))
-        else:
-            return
-        painting.draw_readout(painter, areas, self._told(point.value, point.opacity), current_theme())
