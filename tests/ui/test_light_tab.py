@@ -14,7 +14,7 @@ from sfumato_ui.window import MainWindow
 
 @pytest.mark.parametrize(
     ("name", "field"),
-    [("tilt", "tilt"), ("rotation", "rotation"), ("aperture", "aperture"), ("intensity", "intensity")],
+    [("tilt", "tilt"), ("rotation", "rotation"), ("aperture", "aperture")],
 )
 def test_dragging_a_slider(window: MainWindow, hand: Any, qtbot: QtBot, name: str, field: str) -> None:
     row = getattr(window.light_page, name)
@@ -130,26 +130,6 @@ def test_arrow_keys_nudge_the_lamp(window: MainWindow, hand: Any, qtbot: QtBot) 
     for _ in range(60):
         qtbot.keyClick(dial, Qt.Key.Key_Up)
     assert window.editor.scene.lights[0].tilt > 111, "the keys step over the forbidden band"
-
-
-def test_lamps_are_added_selected_muted_and_removed(window: MainWindow, hand: Any, qtbot: QtBot) -> None:
-    row, editor = window.light_page.lamps, window.editor
-    for count in (2, 3, 4):
-        qtbot.mouseClick(row.add, Qt.MouseButton.LeftButton)
-        assert len(editor.scene.lights) == count
-    assert not row.add.isEnabled()
-    assert editor.selected == 3
-    qtbot.mouseClick(row.chips[1], Qt.MouseButton.LeftButton)
-    assert editor.selected == 1
-    assert window.light_page.tilt.number.value() == editor.scene.lights[1].tilt
-    qtbot.mouseClick(row.mute, Qt.MouseButton.LeftButton)
-    assert [light.enabled for light in editor.scene.lights] == [True, False, True, True]
-    gone = editor.scene.lights[1].name
-    qtbot.mouseClick(row.remove, Qt.MouseButton.LeftButton)
-    assert gone not in [light.name for light in editor.scene.lights]
-    hand.wait_for_picture()
-    editor.undo()
-    assert len(row.chips) == 4
 
 
 def test_choosing_a_technique_opens_its_section(window: MainWindow, hand: Any, qtbot: QtBot) -> None:

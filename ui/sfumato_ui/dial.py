@@ -69,7 +69,7 @@ class LightDial(QWidget):
 
     def sizeHint(self) -> QSize:
         """Prefer a square as tall as a panel can spare."""
-        return QSize(184, 184)
+        return QSize(180, 180)
 
     def minimumSizeHint(self) -> QSize:
         """Stay large enough to aim at."""

@@ -24,6 +24,7 @@ _GLYPHS = {
     "rename": "ph.pencil-simple",
     "mute": "ph.eye-slash",
     "shown": "ph.eye",
+    "solo": "ph.number-circle-one",
     "close": "ph.x",
     "error": "ph.warning",
     "info": "ph.info",

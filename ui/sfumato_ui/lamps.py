@@ -1,15 +1,17 @@
-"""The row of lamps: select one, mute it, remove it, add another."""
+"""The row of lamps: select one, rename it, put it in another place, add one."""
 
 from __future__ import annotations
 
-from qtpy.QtCore import Qt
+from qtpy.QtCore import QRect
 from qtpy.QtWidgets import QHBoxLayout, QToolButton, QWidget
 
-from sfumato import Light
+from sfumato import Light, Scene
 from sfumato.scene import MAX_LIGHTS
+from sfumato.scene.light import shining
 
 from .editing import Editor
 from .icons import icon
+from .lamp_chip import LampChip, NameLine
 from .theme import current_theme
 
 #: What the second to fourth lamp are: a weaker fill from the other side, a rim from behind, a soft top light.
@@ -19,10 +21,11 @@ NEW_LAMPS = (
     Light(name="rim", tilt=140, rotation=60, aperture=15, intensity=0.8),
     Light(name="top", tilt=50, rotation=90, aperture=30, intensity=0.4),
 )
+ORDER = "Move the lamp in the list"
 
 
 class LampRow(QWidget):
-    """One button a lamp, then mute, remove and add."""
+    """One chip a lamp, then a button that adds another."""
 
     def __init__(self, editor: Editor) -> None:
         super().__init__()
@@ -30,27 +33,20 @@ class LampRow(QWidget):
         self._row = QHBoxLayout(self)
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.setSpacing(4)
-        self.chips: list[QToolButton] = []
-        self.mute = self._button("Mute the lamp", checkable=True)
-        self.remove = self._button("Remove the lamp")
-        self.add = self._button("Add a lamp")
+        self.chips: list[LampChip] = []
+        self.name_line: NameLine | None = None
+        self.add = QToolButton()
+        self.add.setAccessibleName("Add a lamp")
         self._row.addStretch(1)
-        for button in (self.mute, self.remove, self.add):
-            self._row.addWidget(button)
-        self.mute.clicked.connect(lambda muted: editor.change_light("Mute the lamp", enabled=not muted))
-        self.remove.clicked.connect(self._remove)
+        self._row.addWidget(self.add)
         self.add.clicked.connect(self._add)
-        editor.changed.connect(lambda old, new: self.refresh() if old.lights != new.lights else None)
+        editor.changed.connect(self._on_changed)
         editor.light_selected.connect(self.refresh)
         self.refresh()
 
-    def _button(self, name: str, checkable: bool = False) -> QToolButton:
-        button = QToolButton()
-        button.setCheckable(checkable)
-        button.setAccessibleName(name)
-        button.setToolTip(name)
-        button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        return button
+    def _on_changed(self, old: Scene, new: Scene) -> None:
+        if old.lights != new.lights:
+            self.refresh()
 
     def refresh(self) -> None:
         """Show the scene's lamps."""
@@ -61,44 +57,35 @@ class LampRow(QWidget):
             chip = self.chips.pop()
             chip.hide()
             chip.deleteLater()
+        shown = shining(lights)
         for i, (chip, light) in enumerate(zip(self.chips, lights, strict=True)):
-            chip.setText(light.name or str(i + 1))
-            chip.setAccessibleName(f"Lamp {light.name or i + 1}")
-            chip.setToolTip(f"{light.name or i + 1}{'' if light.enabled else ' (muted)'}")
-            font = chip.font()
-            font.setStrikeOut(not light.enabled)
-            chip.setFont(font)
-            chip.setChecked(i == self._editor.selected)
-        chosen = self._editor.light
-        self.mute.setChecked(chosen is not None and not chosen.enabled)
-        self.mute.setEnabled(chosen is not None)
-        self.remove.setEnabled(len(lights) > 1)
-        self.remove.setToolTip(
-            "Remove the lamp" if len(lights) > 1 else "The last lamp stays; mute it instead"
-        )
+            shines = any(light is one for one in shown)
+            chip.show_light(light, light.name or str(i + 1), shines, i == self._editor.selected)
         self.add.setEnabled(len(lights) < MAX_LIGHTS)
         self.add.setToolTip("Add a lamp" if len(lights) < MAX_LIGHTS else f"At most {MAX_LIGHTS} lamps")
         self.refresh_theme()
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
-        theme = current_theme()
-        self.mute.setIcon(icon("mute" if self.mute.isChecked() else "shown", theme))
-        self.remove.setIcon(icon("remove", theme))
-        self.add.setIcon(icon("add", theme))
+        self.add.setIcon(icon("add", current_theme()))
 
     def _append_chip(self) -> None:
         index = len(self.chips)
-        chip = self._button("", checkable=True)
-        chip.setProperty("chip", True)
-        chip.clicked.connect(lambda: self._editor.select_light(index))
+        chip = LampChip()
+        # Pressed, not clicked: what is dragged is the selected lamp.
+        chip.pressed.connect(lambda: self._editor.select_light(index))
+        chip.rename_wanted.connect(lambda: self._ask_name(index))
+        chip.nudged.connect(lambda step: self._nudge(index, step))
+        chip.drag_started.connect(lambda: self._editor.begin(ORDER))
+        chip.dragged.connect(self._drag_to)
+        chip.drag_finished.connect(self._editor.end)
         self._row.insertWidget(index, chip)
-        previous = self.chips[-1] if self.chips else None
-        if previous is not None:
-            QWidget.setTabOrder(previous, chip)
-        QWidget.setTabOrder(chip, self.mute)
+        if self.chips:
+            QWidget.setTabOrder(self.chips[-1], chip)
+        QWidget.setTabOrder(chip, self.add)
         self.chips.append(chip)
 
+    # -- lamps ------------------------------------------------------------------------------------
     def _add(self) -> None:
         lights = self._editor.scene.lights
         used = {light.name for light in lights}
@@ -108,8 +95,54 @@ class LampRow(QWidget):
         if self._editor.change("Add a lamp", lights=(*lights, lamp)):
             self._editor.select_light(len(lights))
 
-    def _remove(self) -> None:
-        gone = self._editor.selected
-        lights = tuple(light for i, light in enumerate(self._editor.scene.lights) if i != gone)
-        if self._editor.change("Remove the lamp", lights=lights):
-            self._editor.select_light(min(gone, len(lights) - 1))
+    # -- order ------------------------------------------------------------------------------------
+    def _drag_to(self, x: int) -> None:
+        """Bring the selected lamp to the place under the pointer."""
+        centres = [chip.geometry().center().x() for chip in self.chips]
+        chosen = self._editor.selected
+        target = chosen
+        while target > 0 and x < centres[target - 1]:
+            target -= 1
+        while target < len(centres) - 1 and x > centres[target + 1]:
+            target += 1
+        self._move(chosen, target)
+
+    def _nudge(self, index: int, step: int) -> None:
+        target = index + step
+        if 0 <= target < len(self.chips):
+            self._move(index, target)
+            self.chips[target].setFocus()
+
+    def _move(self, start: int, end: int) -> None:
+        if start == end:
+            return
+        lights = list(self._editor.scene.lights)
+        lights.insert(end, lights.pop(start))
+        if self._editor.change(ORDER, lights=tuple(lights)):
+            self._editor.select_light(end)
+            self._row.activate()
+
+    # -- names ------------------------------------------------------------------------------------
+    def _ask_name(self, index: int) -> None:
+        """Open a line over the chip in which the name is typed."""
+        self._editor.select_light(index)
+        chip = self.chips[index]
+        line = self.name_line = NameLine(self._editor.scene.lights[index].name, self)
+        width = min(self.width(), max(chip.width(), 120))
+        left = min(chip.x(), self.width() - width)
+        line.setGeometry(QRect(left, chip.y(), width, chip.height()))
+        line.finished.connect(lambda name: self._rename(index, name))
+        line.show()
+        line.setFocus()
+
+    def _rename(self, index: int, name: str) -> None:
+        line, self.name_line = self.name_line, None
+        lights = self._editor.scene.lights
+        if name and index < len(lights) and name != lights[index].name:
+            self._editor.change("Rename the lamp", **{f"lights.{index}.name": name})
+        if line is not None:
+            had_focus = line.hasFocus()
+            line.hide()
+            line.deleteLater()
+            if had_focus and index < len(self.chips):
+                self.chips[index].setFocus()

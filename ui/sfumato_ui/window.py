@@ -76,7 +76,8 @@ class MainWindow(QMainWindow):
             self, self.editor, self.viewport, self.worker, self.messages, lambda: self.files.name
         )
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
-        self.light_page, self.material_page = LightPage(self.editor), MaterialPage(self.editor)
+        self.light_page = LightPage(self.editor, self.thumbnails)
+        self.material_page = MaterialPage(self.editor)
         self.material_page.use_thumbnails(self.thumbnails)
         self.view_page = ViewPage(self.editor, self.viewport.clips)
         self.autosave = Autosave(self.editor, self.files.identify, self)

@@ -1,21 +1,24 @@
-"""The Light tab: lamps, dial, tilt, rotation, softness, intensity, technique and what belongs to it."""
+"""The Light tab: lamps, dial, tilt, rotation, softness, rigs, technique and what belongs to it."""
 
 from __future__ import annotations
 
 from qtpy.QtCore import Qt, Signal
+from qtpy.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from sfumato import Light, Scene
 from sfumato.scene import fields_of, nearest_possible_tilt
 from sfumato.techniques import techniques
 
 from .. import light_moves
-from ..color_button import ColorButton
 from ..dial import MOVE, SOFTEN, LightDial
 from ..editing import Editor
 from ..generated import ChoiceBox, ParamControl, controls_for, labelled, tooltip_of
+from ..lamp_tools import LampTools
 from ..lamps import LampRow
+from ..rigs_row import RigsRow
 from ..section import Section
 from ..sliders import LabelledSlider
+from ..thumbnails import Thumbnails
 from .page import Page
 
 
@@ -25,28 +28,38 @@ class LightPage(Page):
     #: The technique's controls were made anew.
     rebuilt = Signal()
 
-    def __init__(self, editor: Editor) -> None:
+    def __init__(self, editor: Editor, thumbnails: Thumbnails) -> None:
         super().__init__()
         self._editor = editor
         self.lamps = LampRow(editor)
         self.dial = LightDial(editor)
+        self.tools = LampTools(editor)
         self.tilt = self._slider("tilt", "Tilt", ((0, 69), (111, 180)))
         self.rotation = self._slider("rotation", "Rotation", ((0, 360),))
         self.aperture = self._slider(
             "aperture", "Softness (aperture)", ((light_moves.MIN_APERTURE, light_moves.MAX_APERTURE),)
         )
-        self.intensity = self._slider(
-            "intensity", "Intensity", ((0, 3),), decimals=2, step=0.05, limits=(0, 100)
-        )
+        self.rigs = RigsRow(editor, thumbnails)
         self.technique = self._technique_menu()
         self.own = Section("", "technique")
         self.more = Section("More", "light_more")
-        self.color = ColorButton("Colour of the lamp")
+        self.note = QLabel()
+        self.note.setProperty("muted", True)
+        self.note.setWordWrap(True)
+        self.attached = self._attached_menu()
         self.controls: list[ParamControl] = []
         self._technique_type: object = None
-        for widget in (self.lamps, self.dial, self.tilt, self.rotation, self.aperture, self.intensity):
+        for widget in (
+            self.lamps,
+            self._dial_and_tools(),
+            self.tilt,
+            self.rotation,
+            self.aperture,
+            self.rigs,
+            labelled("Technique", self.technique),
+            self.note,
+        ):
             self.add(widget)
-        self.add(labelled("Technique", self.technique))
         self.add(self.own)
         self.add(self.more)
         self.finish()
@@ -54,13 +67,21 @@ class LightPage(Page):
         self.refresh()
 
     # -- building ---------------------------------------------------------------------------------
-    def _slider(self, field: str, label: str, pieces: tuple[tuple[float, float], ...], *, decimals: int = 1,
-                step: float = 1.0, limits: tuple[float, float] | None = None) -> LabelledSlider:  # fmt: skip
+    def _dial_and_tools(self) -> QWidget:
+        row = QWidget()
+        layout = QHBoxLayout(row)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(8)
+        layout.addWidget(self.dial, 1)
+        layout.addWidget(self.tools)
+        return row
+
+    def _slider(self, field: str, label: str, pieces: tuple[tuple[float, float], ...]) -> LabelledSlider:
         declared = fields_of(Light)[field]
         assert declared.param is not None
         return LabelledSlider(
             label, pieces, float(declared.default), unit=declared.param.unit, tip=tooltip_of(declared.param),
-            decimals=decimals, step=step, limits=limits,
+            decimals=1, step=1.0,
         )  # fmt: skip
 
     def _technique_menu(self) -> ChoiceBox:
@@ -71,24 +92,35 @@ class LightPage(Page):
             box.setItemData(i, technique.summary, Qt.ItemDataRole.ToolTipRole)
         return box
 
+    def _attached_menu(self) -> ChoiceBox:
+        param = fields_of(Light)["attached"].param
+        assert param is not None
+        box = ChoiceBox()
+        box.setAccessibleName("What the lamp moves with")
+        box.setToolTip(
+            "<p>Viewer: the lamp turns with the camera.</p><p>Patient: it stays where it is when the camera "
+            "moves; tilt and rotation refer to the front view.</p>"
+        )
+        for word in param.choices:
+            box.addItem(word.capitalize(), word)
+        return box
+
     def _connect(self) -> None:
         editor = self._editor
         self.tilt.edited.connect(self._set_tilt)
         self.rotation.edited.connect(lambda v: self._set(self.rotation, MOVE, "rotation", v))
         self.aperture.edited.connect(self._set_aperture)
-        self.intensity.edited.connect(
-            lambda v: self._set(self.intensity, "Change the intensity", "intensity", v)
-        )
         for slider, label in (
             (self.tilt, MOVE),
             (self.rotation, MOVE),
             (self.aperture, SOFTEN),
-            (self.intensity, "Change the intensity"),
         ):
             slider.drag_started.connect(lambda label=label: editor.begin(label))
             slider.drag_finished.connect(editor.end)
         self.technique.activated.connect(self._choose_technique)
-        self.color.picked.connect(lambda rgb: editor.change_light("Colour the lamp", True, color=rgb))
+        self.attached.activated.connect(
+            lambda i: editor.change_light("Attach the lamp", attached=self.attached.itemData(i))
+        )
         editor.changed.connect(self._on_changed)
         editor.light_selected.connect(self._show_light)
 
@@ -122,12 +154,13 @@ class LightPage(Page):
     def _on_changed(self, old: Scene, new: Scene) -> None:
         if old.lights != new.lights:
             self._show_light()
+            self._show_note(new)
         if old.technique != new.technique:
             self._show_technique(new)
 
     def _show_light(self) -> None:
         light = self._editor.light
-        for widget in (self.tilt, self.rotation, self.aperture, self.intensity, self.color):
+        for widget in (self.tilt, self.rotation, self.aperture, self.attached):
             widget.setEnabled(light is not None)
         if light is None:
             return
@@ -135,8 +168,7 @@ class LightPage(Page):
         self.tilt.set_number(light.tilt)
         self.rotation.set_number(light.rotation if light.rotation == 360 else light.rotation % 360)
         self.aperture.set_number(light.aperture)
-        self.intensity.set_number(light.intensity)
-        self.color.set_color(light.color)
+        self.attached.setCurrentIndex(self.attached.findData(light.attached))
 
     def _show_technique(self, scene: Scene) -> None:
         technique = techniques()[scene.technique_id]
@@ -147,20 +179,34 @@ class LightPage(Page):
             self._rebuild(technique.title)
         for control in self.controls:
             control.show_value()
+        self._show_note(scene)
+
+    def _show_note(self, scene: Scene) -> None:
+        """Say what the technique leaves out of the lamps."""
+        technique = techniques()[scene.technique_id]
+        shining = len(scene.active_lights)
+        text = ""
+        if not technique.lit:
+            text = "This technique draws without light."
+        elif shining > technique.max_lights:
+            text = f"This technique uses {technique.max_lights} of {shining} lamps: the first in the list."
+        self.note.setText(text)
+        self.note.setVisible(bool(text))
+        self.rigs.set_reason("" if technique.lit else text)
 
     def _rebuild(self, title: str) -> None:
         """Make the technique's own controls: its essentials in its section, the rest under More."""
         fields = fields_of(type(self._editor.scene.technique))
         essential = controls_for(fields, "essential", self._editor, "technique.")
         rest = controls_for(fields, "more", self._editor, "technique.")
-        self.color.setParent(self)
+        self.attached.setParent(self)
         self.own.clear()
         self.more.clear()
         self.own.set_title(title)
         self.own.setVisible(bool(essential))
         for control in essential:
             self.own.add(control)
-        self.more.add(labelled("Lamp colour", self.color))
+        self.more.add(labelled("Lamp fixed to", self.attached))
         for control in rest:
             self.more.add(control)
         self.controls = essential + rest

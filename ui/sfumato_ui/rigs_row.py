@@ -1,0 +1,206 @@
+"""The six rigs as live pictures of the user's own scene; a click lights it so."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+from qtpy.QtCore import QRectF, QSize, Qt, QTimer, Signal
+from qtpy.QtGui import (
+    QColor,
+    QHideEvent,
+    QImage,
+    QKeyEvent,
+    QPainter,
+    QPainterPath,
+    QPaintEvent,
+    QPen,
+    QShowEvent,
+)
+from qtpy.QtWidgets import QAbstractButton, QGridLayout, QSizePolicy, QWidget
+
+from sfumato import Scene
+from sfumato.scene.rigs import Rig, rig_of, rigs
+
+from .editing import Editor
+from .theme import PICTURE_GREY, current_theme
+from .thumbnails import Thumbnails
+
+GROUP = "rigs"
+COLUMNS = 3
+#: Width and height of a picture in pixels.
+PICTURE = (88, 60)
+#: Quiet time in milliseconds after which the pictures are drawn anew.
+QUIET_MS = 400
+
+
+class RigButton(QAbstractButton):
+    """A rig's picture with its name below."""
+
+    #: The focus is to go this many buttons on.
+    focus_moved = Signal(int)
+
+    def __init__(self, rig: Rig) -> None:
+        super().__init__()
+        self.rig = rig
+        self._image = QImage()
+        self.setCheckable(True)
+        self.setText(rig.title)
+        self.setAccessibleName(f"Rig {rig.title}")
+        self.setToolTip(f"<p><b>{rig.title}</b></p><p>{rig.description}</p>")
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+
+    @property
+    def image(self) -> QImage:
+        """The picture, null until it is drawn."""
+        return self._image
+
+    def set_image(self, image: QImage) -> None:
+        """Show a picture."""
+        self._image = image
+        self.update()
+
+    def nextCheckState(self) -> None:
+        """Leave the mark to the scene: a click on the current rig does not take it away."""
+
+    def sizeHint(self) -> QSize:
+        """Hold picture, frame and name."""
+        name = self.fontMetrics()
+        width = max(PICTURE[0], name.horizontalAdvance(self.text())) + 6
+        return QSize(width, PICTURE[1] + name.height() + 8)
+
+    def minimumSizeHint(self) -> QSize:
+        """Do not shrink."""
+        return self.sizeHint()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Arrow keys go from rig to rig, Enter applies as Space does."""
+        steps = {
+            Qt.Key.Key_Left: -1,
+            Qt.Key.Key_Right: 1,
+            Qt.Key.Key_Up: -COLUMNS,
+            Qt.Key.Key_Down: COLUMNS,
+        }
+        key = Qt.Key(event.key())
+        if key in steps:
+            self.focus_moved.emit(steps[key])
+        elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.click()
+        else:
+            super().keyPressEvent(event)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw picture, name, the mark of the current rig and the focus ring."""
+        theme = current_theme()
+        painter = QPainter(self)
+        painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.SmoothPixmapTransform)
+        frame = QRectF((self.width() - PICTURE[0]) / 2, 3, *PICTURE)
+        rounded = QPainterPath()
+        rounded.addRoundedRect(frame, 4, 4)
+        painter.fillPath(rounded, QColor(PICTURE_GREY))
+        painter.save()
+        painter.setClipPath(rounded)
+        painter.setOpacity(1.0 if self.isEnabled() else 0.4)
+        if not self._image.isNull():
+            painter.drawImage(frame, self._image)
+        painter.restore()
+        self._draw_frame(painter, frame)
+        painter.setPen(QColor(theme.text if self.isEnabled() else theme.border))
+        font = painter.font()
+        font.setBold(self.isChecked())
+        painter.setFont(font)
+        below = QRectF(0, frame.bottom() + 3, self.width(), self.height() - frame.bottom() - 3)
+        painter.drawText(below, Qt.AlignmentFlag.AlignCenter, self.text())
+
+    def _draw_frame(self, painter: QPainter, frame: QRectF) -> None:
+        """Draw an accent frame for the current rig, and the focus ring around it."""
+        theme = current_theme()
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        if self.isChecked():
+            painter.setPen(QPen(QColor(theme.accent), 3))
+            painter.drawRoundedRect(frame.adjusted(0.5, 0.5, -0.5, -0.5), 4, 4)
+        elif self.underMouse():
+            painter.setPen(QPen(QColor(theme.border), 2))
+            painter.drawRoundedRect(frame, 4, 4)
+        if self.hasFocus():
+            painter.setPen(QPen(QColor(theme.text if self.isChecked() else theme.accent), 2))
+            painter.drawRoundedRect(frame.adjusted(-2, -2, 2, 2), 5, 5)
+
+
+class RigsRow(QWidget):
+    """All rigs; the pictures are drawn when the scene is still and the row is seen."""
+
+    def __init__(self, editor: Editor, thumbnails: Thumbnails) -> None:
+        super().__init__()
+        self._editor, self._thumbnails = editor, thumbnails
+        self.buttons = {rig.id: RigButton(rig) for rig in rigs().values()}
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setSpacing(2)
+        for i, button in enumerate(self.buttons.values()):
+            grid.addWidget(button, i // COLUMNS, i % COLUMNS)
+            button.clicked.connect(lambda _, rig=button.rig: self._apply(rig))
+            button.focus_moved.connect(lambda step, i=i: self._move_focus(i + step))
+        self._quiet = QTimer(self)
+        self._quiet.setSingleShot(True)
+        self._quiet.setInterval(QUIET_MS)
+        self._quiet.timeout.connect(self._want_pictures)
+        editor.changed.connect(self._on_changed)
+        thumbnails.ready.connect(self._on_ready)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Mark the current rig, and draw the pictures soon."""
+        current = rig_of(self._editor.scene.lights)
+        for name, button in self.buttons.items():
+            button.setChecked(name == current)
+        self._quiet.start()
+
+    def set_reason(self, reason: str) -> None:
+        """Disable the rigs for a reason, or enable them if there is none."""
+        self.setEnabled(not reason)
+        self.setToolTip(reason)
+
+    def _on_changed(self, old: Scene, new: Scene) -> None:
+        if old.volume is not new.volume:
+            for button in self.buttons.values():
+                button.set_image(QImage())
+        self.refresh()
+
+    def _apply(self, rig: Rig) -> None:
+        if self._editor.scene.lights == rig.lights:
+            return
+        if self._editor.change(f"Light with rig {rig.title}", lights=rig.lights):
+            self._editor.select_light(0)
+
+    def _move_focus(self, index: int) -> None:
+        if 0 <= index < len(self.buttons):
+            list(self.buttons.values())[index].setFocus(Qt.FocusReason.OtherFocusReason)
+
+    # -- pictures ---------------------------------------------------------------------------------
+    def _want_pictures(self) -> None:
+        scene = self._editor.scene
+        if scene.volume is None or not self.isVisible():
+            return
+        ratio = self.devicePixelRatioF()
+        size = round(PICTURE[0] * ratio), round(PICTURE[1] * ratio)
+        wanted: dict[Hashable, Scene] = {
+            name: scene.with_(lights=button.rig.lights) for name, button in self.buttons.items()
+        }
+        self._thumbnails.want(GROUP, wanted, size)
+
+    def _on_ready(self, group: str, key: Hashable, image: QImage) -> None:
+        if group == GROUP and isinstance(key, str) and key in self.buttons:
+            self.buttons[key].set_image(image)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Draw what changed while the row was hidden."""
+        super().showEvent(event)
+        self._quiet.start()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        """Draw nothing that nobody sees."""
+        super().hideEvent(event)
+        self._quiet.stop()
+        self._thumbnails.forget(GROUP)
