@@ -56,9 +56,9 @@ class ClipControls(QWidget):
             row.addWidget(button)
         cuts = QHBoxLayout()
         cuts.setSpacing(6)
-        for button in self.cuts:
-            button.setProperty("compact", True)
-            cuts.addWidget(button, 1)
+        for cut in self.cuts:
+            cut.setProperty("compact", True)
+            cuts.addWidget(cut, 1)
         own = QVBoxLayout(self._own)
         own.setContentsMargins(0, 0, 0, 0)
         own.setSpacing(4)

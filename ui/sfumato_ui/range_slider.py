@@ -156,11 +156,11 @@ class RangeSlider(QWidget):
                 painter.setPen(QPen(QColor(theme.accent), 2))
                 painter.drawEllipse(QPointF(x, middle), _HANDLE + 1, _HANDLE + 1)
 
-    def focusInEvent(self, event: QEvent) -> None:  # type: ignore[override]
+    def focusInEvent(self, event: QEvent) -> None:
         """Show the ring."""
         self.update()
 
-    def focusOutEvent(self, event: QEvent) -> None:  # type: ignore[override]
+    def focusOutEvent(self, event: QEvent) -> None:
         """Hide the ring."""
         self.update()
 

@@ -180,6 +180,10 @@ class Viewport(QWidget):
     def _target(self, picture: Picture) -> QRectF:
         """Return where to paint: a picture of another size keeps its height, as the camera's opening does."""
         if picture.size == self.pixel_size:
+            if (picture.image.width(), picture.image.height()) == picture.size:
+                # Pixel on pixel: the widget's own size may be half a pixel off on a dense screen.
+                ratio = self.devicePixelRatioF()
+                return QRectF(0, 0, picture.size[0] / ratio, picture.size[1] / ratio)
             return QRectF(self.rect())
         width = self.height() * picture.size[0] / picture.size[1]
         return QRectF((self.width() - width) / 2, 0, width, self.height())

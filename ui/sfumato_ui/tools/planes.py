@@ -80,7 +80,7 @@ def handles(scene: Scene, view: PictureView) -> list[Handle]:
 def arm(view: PictureView, plane: ClipPlane) -> np.ndarray:
     """Return the unit direction to the side that is cut away, in the camera's axes (right, up, back)."""
     basis = view.camera.basis()
-    return np.array([basis.right, basis.up, basis.back]) @ -unit(plane.normal)
+    return np.asarray(np.array([basis.right, basis.up, basis.back]) @ -unit(plane.normal))
 
 
 def arm_place(view: PictureView, middle: Place, plane: ClipPlane) -> Place:
