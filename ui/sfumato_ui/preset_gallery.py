@@ -112,7 +112,8 @@ class PresetGallery(QListWidget):
     # -- size -------------------------------------------------------------------------------------
     def _fit(self) -> None:
         """Take the height of all rows; the names are a little smaller than other text, so that they fit."""
-        self.setFont(small(self.parentWidget().font() if self.parentWidget() else self.font()))
+        parent = self.parentWidget()
+        self.setFont(small((parent or self).font()))
         width = max(1, (self.width() - 2 * self.frameWidth() - 2) // COLUMNS)
         height = PICTURE[1] + self.fontMetrics().height() + 14
         self.setGridSize(QSize(width, height))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from dataclasses import replace
 
 from qtpy.QtCore import QTimer
@@ -85,13 +86,18 @@ class MaterialPage(Page):
         editor.changed.connect(self._on_changed)
         self._quiet.timeout.connect(self._want_pictures)
 
-    def _bind(self, slider: LabelledSlider, label: str, function: object) -> None:
+    def _bind(
+        self,
+        slider: LabelledSlider,
+        label: str,
+        function: Callable[[TransferFunction, float], TransferFunction],
+    ) -> None:
         """Let a slider edit the transfer function; a drag is one step."""
 
         def edit(value: float) -> None:
             transfer = self._editor.scene.transfer
             if transfer is not None:
-                changed = function(transfer, value)  # type: ignore[operator]
+                changed = function(transfer, value)
                 self._editor.change(label, not slider.slider.isSliderDown(), transfer=changed)
             self.refresh()
 
@@ -145,7 +151,9 @@ class MaterialPage(Page):
         ratio = self.devicePixelRatioF()
         size = round(PICTURE[0] * ratio), round(PICTURE[1] * ratio)
         bare = scene.with_(background=(0.0, 0.0, 0.0, 0.0))
-        wanted = {row: bare.with_(transfer=p.transfer) for row, p in enumerate(self._presets)}
+        wanted: dict[Hashable, Scene] = {
+            row: bare.with_(transfer=p.transfer) for row, p in enumerate(self._presets)
+        }
         self._thumbnails.want(GROUP, wanted, size)
 
     def _on_thumbnail(self, group: str, key: object, image: QImage) -> None:

@@ -211,7 +211,7 @@ class TransferCanvas(QWidget):
         painting.draw_box(painter, areas, theme, self.hasFocus())
         if self._volume is None:
             return
-        painter.setClipRect(areas.box.adjusted(2, 2, -2, -2))
+        painter.setClipRect(areas.plot.adjusted(-5, -9, 5, 0))
         painting.draw_histogram(painter, scale, self._histogram, theme)
         painter.setClipping(False)
         painting.draw_lines(painter, scale, theme)
