@@ -24,6 +24,8 @@ LEAST_DETAIL = 0.01
 #: Degrees by which the lamp moves between timed frames, so that nothing kept from the last one helps.
 NUDGE = 1e-3
 TIMED = 3
+#: Least sampling distance in voxels that a scene may have; 1024 slices of a flat stage would be thinner.
+THINNEST = 0.05
 
 
 @dataclass(frozen=True)
@@ -189,8 +191,8 @@ def _apart(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _cut(scene: Scene, slices: int) -> Scene:
-    """Return a scene whose volume is cut into a number of slices across the view."""
+    """Return a scene whose volume is cut into a number of slices across the view, if they can be so thin."""
     assert scene.camera is not None
     assert scene.volume is not None
     depth = np.ptp(scene.volume.corners() @ np.array(scene.camera.basis().back))
-    return scene.with_(step=float(depth) / slices / scene.volume.min_spacing)
+    return scene.with_(step=max(THINNEST, float(depth) / slices / scene.volume.min_spacing))
