@@ -12,14 +12,15 @@ from cyclopts import App, Parameter
 
 import sfumato
 
-from .flags import SceneFlags, TechniqueFlags, changed, parse_size, widened
+from .errors import UsageError
+from .flags import SceneFlags, TechniqueFlags, changed, widened
 from .opening import ReadFlags
+from .printing import PrintFlags
 
 HELP = "Light for volumes: the window on PATH, or on the embedded sample."
 EPILOGUE = (
     "--debug with any command shows tracebacks. Exit status: 0 done, 1 bad input or device, 2 wrong usage."
 )
-DEFAULT_SIZE = "1024x1024"
 
 app = App(
     name="sfumato",
@@ -52,15 +53,17 @@ def render(
     *,
     output: Annotated[
         Path | None,
-        Parameter(name=["--output", "-o"], help="The picture (default: PATH's name with .png, here)."),
+        Parameter(
+            name=["--output", "-o"], help="The picture: .png or .tif (default: PATH's name with .png, here)."
+        ),
     ] = None,
-    size: Annotated[str, Parameter(help="Width and height in pixels.")] = DEFAULT_SIZE,
     linear: Annotated[
         bool, Parameter(negative="", help="Linear light, before exposure, to .exr or .npy.")
     ] = False,
     volume: Annotated[
         str | None, Parameter(help="The volume to use instead of the one that a scene or picture names.")
     ] = None,
+    file: PrintFlags = PrintFlags(),  # noqa: B008
     read: ReadFlags = ReadFlags(),  # noqa: B008
     flags: SceneFlags = SceneFlags(),  # noqa: B008
     own: TechniqueFlags = TechniqueFlags(),  # type: ignore[valid-type]  # noqa: B008
@@ -69,14 +72,16 @@ def render(
     from .drawing import draw, target_of
     from .opening import is_scene, open_scene
 
-    width, height = parse_size(size)
+    spec = file.spec()
     target, linear = target_of(path, output, linear)
-    aspect = width / height
+    if linear and file.only_for_print:
+        raise UsageError(f"{', '.join(file.only_for_print)}: not for linear pictures")
+    aspect = spec.size[0] / spec.size[1]
     scene = open_scene(path, volume, read)
     if not is_scene(path) and scene.camera is not None:
         scene = scene.with_(camera=widened(scene.camera, aspect))
     scene = changed(scene, flags, own, aspect)
-    print(draw(scene, (width, height), target, linear))
+    print(draw(scene, spec, target, linear))
 
 
 @app.command

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from collections import deque
+from contextlib import closing
 from pathlib import Path
 
 import sfumato
 from sfumato import Scene, SceneError
 from sfumato.export.linear import LINEAR_SUFFIXES, write_linear
-from sfumato.export.png import write_png
+from sfumato.export.picture import STREAMS, PictureSpec, write_picture
 
 from .errors import UsageError
 from .opening import SAMPLE
@@ -27,8 +29,8 @@ def target_of(path: str, output: Path | None, linear: bool) -> tuple[Path, bool]
     suffix = output.suffix.lower()
     if linear and suffix not in LINEAR_SUFFIXES:
         raise UsageError(f"-o {output}: with --linear it must end in {' or '.join(LINEAR_SUFFIXES)}")
-    if suffix not in (".png", *LINEAR_SUFFIXES):
-        raise UsageError(f"-o {output}: it must end in .png, {' or '.join(LINEAR_SUFFIXES)}")
+    if suffix not in (*STREAMS, *LINEAR_SUFFIXES):
+        raise UsageError(f"-o {output}: it must end in {', '.join(STREAMS)}, {' or '.join(LINEAR_SUFFIXES)}")
     if _same(output, path):
         raise UsageError(f"-o {output}: this is the input; give another name")
     return output, suffix in LINEAR_SUFFIXES
@@ -51,7 +53,7 @@ def stem_of(path: str) -> str:
     return name.rsplit(".", 1)[0] if "." in name.lstrip(".") else name
 
 
-def draw(scene: Scene, size: tuple[int, int], target: Path, linear: bool = False) -> str:
+def draw(scene: Scene, spec: PictureSpec, target: Path, linear: bool = False) -> str:
     """Draw a scene, write it, and return a line that says so.
 
     Raises
@@ -64,7 +66,25 @@ def draw(scene: Scene, size: tuple[int, int], target: Path, linear: bool = False
     if not target.parent.is_dir():
         raise sfumato.SfumatoError(f"{target}: there is no folder {target.parent}")
     began = time.perf_counter()
-    picture = sfumato.render(scene, size=size, linear=linear)
+    if linear:
+        write_linear(target, sfumato.render(scene, size=spec.size, linear=True), scene)
+    else:
+        _write_with_progress(scene, spec, target)
     seconds = time.perf_counter() - began
-    (write_linear if linear else write_png)(target, picture, scene)
-    return f"{target}: {size[0]} x {size[1]}, {scene.technique_id}, {seconds:.1f} s"
+    return f"{target}: {spec.size[0]} x {spec.size[1]}, {scene.technique_id}, {seconds:.1f} s"
+
+
+def _write_with_progress(scene: Scene, spec: PictureSpec, target: Path) -> None:
+    """Draw and write; on a terminal, with a bar that goes away when it is done."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    with closing(write_picture(target, scene, spec)) as pieces:
+        if not console.is_terminal:
+            deque(pieces, maxlen=0)
+            return
+        with Progress(console=console, transient=True) as bar:
+            task = bar.add_task(target.name, total=1.0)
+            for done in pieces:
+                bar.update(task, completed=done)

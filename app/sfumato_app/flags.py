@@ -98,6 +98,10 @@ def declared_parameters() -> dict[str, _Declared]:
     """
     taken = {f.name for f in dataclasses.fields(SceneFlags)} | {
         "size",
+        "mm",
+        "dpi",
+        "bits",
+        "scale_bar",
         "output",
         "linear",
         "volume",

@@ -10,6 +10,7 @@ from cyclopts import Group, Parameter
 
 import sfumato
 from sfumato import LoadError, Scene, Volume
+from sfumato.export.png import carries_scene
 
 from .numbers import whole
 
@@ -25,7 +26,9 @@ FRAMES = 4
 
 def is_scene(path: str) -> bool:
     """Tell whether a path names a scene file or a picture, as opposed to a volume."""
-    return Path(path).suffix.lower() in (SCENE_SUFFIX, ".png") and not Path(path).is_dir()
+    if Path(path).suffix.lower() == SCENE_SUFFIX:
+        return not Path(path).is_dir()
+    return carries_scene(path)
 
 
 READING = Group("Reading")

@@ -32,13 +32,12 @@ def show(path: str | None) -> int:
 
 
 def _draw_instead(path: str | None) -> int:
-    from .cli import DEFAULT_SIZE
     from .drawing import draw
-    from .flags import parse_size
     from .opening import DEFAULT_SAMPLE, open_scene
+    from .printing import PrintFlags
 
     print(
         f"sfumato: no screen here (DISPLAY is not set); drawing to {SAMPLE_PICTURE} instead", file=sys.stderr
     )
-    print(draw(open_scene(path or DEFAULT_SAMPLE), parse_size(DEFAULT_SIZE), Path(SAMPLE_PICTURE)))
+    print(draw(open_scene(path or DEFAULT_SAMPLE), PrintFlags().spec(), Path(SAMPLE_PICTURE)))
     return 0

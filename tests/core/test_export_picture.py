@@ -11,10 +11,11 @@ import pytest
 from PIL import Image
 
 import sfumato
-from sfumato import Camera, Light, Scene, SceneError, SfumatoError
+from sfumato import Camera, Light, LoadError, Scene, SceneError, SfumatoError
 from sfumato.export.encode import encode16, srgb
 from sfumato.export.picture import PictureSpec, framed, pixels_of, write_picture
-from sfumato.export.png import open_png, write_png
+from sfumato.export.png import carries_scene, open_png, read_scene_data, write_png
+from sfumato.export.scale_bar import ScaleBar, round_length, words_for
 from sfumato.export.tiles import bands_of
 
 tifffile = pytest.importorskip("tifffile")
@@ -256,3 +257,65 @@ def test_a_narrower_picture_shows_all_that_was_seen(parallel):
 def test_written_files_are_named_in_full(tmp_path: Path, scene):
     finish(tmp_path / "a.b.PNG", scene.with_(technique="raycast"), PictureSpec((4, 4)))
     assert [p.name for p in tmp_path.iterdir()] == ["a.b.PNG"]
+
+
+def test_a_tiff_of_ours_opens_as_its_scene(tmp_path, still_life):
+    np.save(tmp_path / "v.npy", still_life.data)
+    scene = Scene(volume=sfumato.load(tmp_path / "v.npy"), technique="raycast")
+    finish(tmp_path / "a.tif", scene, PictureSpec((6, 4)))
+    assert carries_scene(tmp_path / "a.tif")
+    assert open_png(tmp_path / "a.tif") == scene
+    tifffile.imwrite(tmp_path / "b.tif", np.zeros((5, 6), np.uint8), description='{"program": "other"}')
+    assert not carries_scene(tmp_path / "b.tif")
+    data = (tmp_path / "a.tif").read_bytes()
+    for end in (0, 3, 7, 300, len(data) - 900):
+        (tmp_path / "c.tif").write_bytes(data[:end])
+        with pytest.raises(LoadError):
+            read_scene_data(tmp_path / "c.tif")
+
+
+# -- the scale bar ----------------------------------------------------------------------------------
+def test_lengths_are_round():
+    assert [round_length(x) for x in (0.07, 1.0, 1.9, 4.99, 5.0, 23, 700)] == [0.05, 1, 1, 2, 5, 20, 500]
+    assert [words_for(x) for x in (0.05, 2, 10, 50, 200)] == ["0.05 mm", "2 mm", "1 cm", "5 cm", "20 cm"]
+
+
+@pytest.mark.parametrize("dpi", [None, 300])
+@pytest.mark.parametrize("ground", [0, 255])
+def test_scale_bar_has_its_true_length_and_stands_out(dpi, ground):
+    camera = Camera(parallel_projection=True, parallel_scale=60)
+    size = (800, 600)
+    bar = ScaleBar.for_picture(camera, size, dpi)
+    assert bar.pixels == pytest.approx(bar.length * 600 / 120)
+    assert (bar.length, bar.label) == (20, "2 cm")
+    picture = np.full((600, 800, 4), ground, np.uint8)
+    picture[..., 3] = 255
+    bar.draw_on(picture, 0)
+    row = picture[bar.place[1] + int(np.argmax(bar.ink[..., 0].sum(axis=1))), :, 0].astype(float)
+    rim = picture[..., 0].astype(int)
+    left = bar.place[0]
+    inside = row[left : left + bar.ink.shape[1]]
+    if ground == 0:
+        assert inside.sum() / 255 == pytest.approx(bar.pixels, abs=0.1), "white, to a tenth of a pixel"
+    assert rim.max() == 255
+    assert rim.min() == 0
+    assert left + bar.ink.shape[1] < 800
+
+
+def test_scale_bar_in_parts_is_the_same():
+    camera = Camera(parallel_projection=True, parallel_scale=60)
+    bar = ScaleBar.for_picture(camera, (400, 300))
+    whole = np.zeros((300, 400, 4), np.uint16)
+    bar.draw_on(whole, 0)
+    parts = np.zeros_like(whole)
+    for top in range(0, 300, 7):
+        bar.draw_on(parts[top : top + 7], top)
+    np.testing.assert_array_equal(whole, parts)
+    assert whole[..., 3].max() == 65535, "seen on nothing too"
+
+
+def test_scale_bars_that_cannot_be():
+    with pytest.raises(SceneError, match="orthographic"):
+        ScaleBar.for_picture(Camera(), (400, 300))
+    with pytest.raises(SceneError, match="larger"):
+        ScaleBar.for_picture(Camera(parallel_projection=True), (20, 10))

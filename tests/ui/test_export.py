@@ -145,15 +145,13 @@ def test_scale_bar_needs_an_orthographic_view(window: MainWindow, hand: Any, qtb
 
 def test_the_dialog_by_tab_alone(window: MainWindow, hand: Any, qtbot: QtBot) -> None:
     dialog = open_dialog(window, hand, qtbot)
-    dialog.activateWindow()
-    qtbot.waitUntil(lambda: QApplication.focusWidget() is not None)
     wanted: list[QWidget] = [
         dialog.preset, *dialog.pixels, *dialog.lengths, dialog.lock, dialog.dpi, dialog.format, dialog.bits,
         dialog.quality, dialog.transparent,
     ]  # fmt: skip
     dialog.preset.setFocus()
     for control in wanted:
-        assert QApplication.focusWidget() is control
+        assert dialog.focusWidget() is control
         named = control.accessibleName() or getattr(control, "text", str)()
         assert named
         assert control.toolTip()

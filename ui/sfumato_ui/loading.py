@@ -13,7 +13,7 @@ from qtpy.QtCore import QObject, Signal
 
 import sfumato_samples
 from sfumato import Scene, Volume
-from sfumato.export.png import open_png
+from sfumato.export.png import carries_scene, open_png
 
 from .worker import one_line
 
@@ -153,7 +153,7 @@ def read_scene(wish: Wish, progress: Any = None, cancel: Any = None) -> Scene:
         scene = Scene.open(wish.path)
     elif wish.is_sample:
         scene = sfumato_samples.scene(wish.path.removeprefix(SAMPLE))
-    elif wish.path.lower().endswith(".png"):
+    elif carries_scene(wish.path):
         scene = open_png(wish.path)
     else:
         scene = Scene(volume=_read_volume(wish, progress, cancel))

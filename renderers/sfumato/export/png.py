@@ -20,10 +20,11 @@ from ..errors import LoadError, SceneError
 from ..scene import Scene, Volume
 from .atomic import replacing
 from .streams import KEYWORD, PngStream
+from .tiff_text import MAGIC, MAX_TEXT, is_tiff_of_ours, read_tiff_text
 
 SAMPLE = "sample:"
-#: Bytes of text that a reader takes; a scene with many tracts stays far below.
-MAX_TEXT = 1 << 26
+#: File name endings of pictures that may carry a scene.
+TIFF_SUFFIXES = (".tif", ".tiff")
 
 
 def write_png(
@@ -78,15 +79,17 @@ def read_scene_data(path: str | os.PathLike[str]) -> dict[str, Any]:
     Raises
     ------
     LoadError
-        If the file is not a PNG of ours.
+        If the file is not a PNG (or TIFF) of ours.
     """
     try:
         with open(path, "rb") as stream:
-            text = _find_text(stream)
+            tiff = stream.read(4) == MAGIC
+            stream.seek(0)
+            text = read_tiff_text(stream) if tiff else _find_text(stream)
     except OSError as error:
         raise LoadError(path, error.strerror or str(error), "check the path") from None
     except struct.error:
-        raise LoadError(path, "this PNG ends too soon", "open a picture that Sfumato wrote") from None
+        raise LoadError(path, "this picture ends too soon", "open a picture that Sfumato wrote") from None
     except (ValueError, zlib.error) as error:
         raise LoadError(path, f"not a readable PNG ({error})", "open a picture that Sfumato wrote") from None
     if text is None:
@@ -130,6 +133,14 @@ def _itxt_text(rest: bytes) -> str:
         if inflate.unconsumed_tail:
             raise ValueError("its text is too long")
     return text.decode("utf-8")
+
+
+def carries_scene(path: str | os.PathLike[str]) -> bool:
+    """Tell whether a file is to be opened as a picture with its scene: a PNG, or a TIFF that we wrote."""
+    suffix = Path(path).suffix.lower()
+    if Path(path).is_dir():
+        return False
+    return suffix == ".png" or (suffix in TIFF_SUFFIXES and is_tiff_of_ours(path))
 
 
 def open_png(path: str | os.PathLike[str], volume: Volume | None = None) -> Scene:
