@@ -166,6 +166,15 @@ def test_bad_files_are_told_and_the_others_serve(
     qtbot.waitUntil(lambda: "cannot be read" in window.messages.text)
 
 
+def test_another_window_s_presets_are_there_when_the_tab_comes_back(page: MaterialPage) -> None:
+    window = page.window()
+    OwnPresets().save("Elsewhere", FUNCTION)
+    window.panel.setCurrentIndex(0)
+    assert "Elsewhere" not in names(page)
+    window.panel.setCurrentIndex(1)
+    assert "Elsewhere" in names(page)
+
+
 def test_a_folder_that_cannot_be_written_is_told(
     page: MaterialPage, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -173,6 +173,27 @@ def test_typed_numbers_and_colour(plot: TransferPlot, user: Any, qtbot: QtBot) -
     assert _of(points(plot)[0]) == (5, 0.25)
 
 
+def test_a_point_glows_in_its_colour(plot: TransferPlot, user: Any, qtbot: QtBot) -> None:
+    page = plot.window().material_page
+    page.more.set_open(True)
+    qtbot.mouseClick(plot, Qt.MouseButton.LeftButton, pos=place(plot, 120, 0.9))
+    page.transfer.glow.number.setValue(1.8)
+    assert points(plot)[1].emission == pytest.approx((1.8, 1.7, 1.6))
+    page.transfer.glow.number.setValue(0)
+    assert points(plot)[1].emission == (0, 0, 0)
+
+
+def test_holding_b_is_the_window_s_also_in_the_gallery(plot: TransferPlot, qtbot: QtBot) -> None:
+    window = plot.window()
+    before = window.editor.scene
+    for widget in (window.material_page.presets, plot):
+        widget.setFocus()
+        qtbot.keyPress(widget, Qt.Key.Key_B)
+        assert window.driver.shown_scene.technique_id == "raycast"
+        qtbot.keyRelease(widget, Qt.Key.Key_B)
+        assert window.driver.shown_scene == before
+
+
 def test_the_colour_dialog_is_one_step(plot: TransferPlot, qtbot: QtBot, monkeypatch: Any) -> None:
     editor = plot.window().material_page.transfer
     qtbot.mouseClick(plot, Qt.MouseButton.LeftButton, pos=place(plot, 120, 0.9))
@@ -263,12 +284,12 @@ def test_a_move_costs_little(plot: TransferPlot, qtbot: QtBot) -> None:
     seconds = []
     for i in range(12):
         plot._hover = QPointF(120 + i, 60)
-        started = time.perf_counter()
+        started = time.thread_time()  # of this thread alone: the picture is drawn meanwhile
         plot.change_point("Move the point", value=120 + i)
         plot.repaint()
-        seconds.append(time.perf_counter() - started)
+        seconds.append(time.thread_time() - started)
     print(f"a move and its painting: {1e3 * float(np.median(seconds)):.1f} ms")
-    assert np.median(seconds) < 0.05
+    assert np.median(seconds) < 0.03
 
 
 def test_hounsfield_values_are_named_also_when_stored_without_their_intercept(

@@ -127,11 +127,14 @@ class PresetGallery(QListWidget):
 
     # -- keys and wheel ---------------------------------------------------------------------------
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """F2 renames, Del deletes, arrows choose."""
+        """F2 renames, Del deletes, arrows choose; letters are the window's."""
         if event.key() == Qt.Key.Key_F2:
             self.rename_wanted.emit()
         elif event.key() in (Qt.Key.Key_Delete, Qt.Key.Key_Backspace):
             self.delete_wanted.emit()
+        elif event.text().strip():
+            # Qt would look for a name that begins with the letter: holding B would choose Bone.
+            event.ignore()
         else:
             super().keyPressEvent(event)
 

@@ -38,7 +38,7 @@ class MaterialPage(Page):
         self._thumbnails: Thumbnails | None = None
         self._answer = "save"
         self.own = OwnPresets()
-        self._untold = self.own.problems
+        self._told: tuple[str, ...] = ()
         self.bar, self.ask, self.presets = PresetBar(), AskLine(), PresetGallery()
         self.transfer = TransferEditor(editor)
         self.more = Section("More", "material_more")
@@ -50,6 +50,7 @@ class MaterialPage(Page):
             self.add(widget)
         self.more.add(self.level)
         self.more.add(self.width_of_all)
+        self.more.add(self.transfer.glow)
         self.finish()
         self._connect()
         self.refresh()
@@ -161,12 +162,18 @@ class MaterialPage(Page):
             self.presets.show_picture(key, image)
 
     def showEvent(self, event: QShowEvent) -> None:
-        """Want pictures only while the tab is in front; tell once what could not be read."""
+        """Want pictures only while the tab is in front; see what other windows saved or broke meanwhile."""
         super().showEvent(event)
         self._quiet.start()
-        for problem in self._untold:
-            self._editor.rejected.emit(problem)
-        self._untold = ()
+        before = self.own.presets
+        self.own.load()
+        if self.own.presets != before:
+            self._fill()
+            self.refresh()
+        for problem in self.own.problems:
+            if problem not in self._told:
+                self._editor.rejected.emit(problem)
+        self._told = self.own.problems
 
     def hideEvent(self, event: QHideEvent) -> None:
         """Want no more pictures."""

@@ -11,7 +11,7 @@ from sfumato.scene import transfer_edit
 from ..color_button import ColorButton
 from ..editing import Editor
 from ..icons import icon
-from ..sliders import NumberBox
+from ..sliders import LabelledSlider, NumberBox
 from ..theme import TARGET, current_theme
 from .plot import TransferPlot
 
@@ -31,6 +31,11 @@ class TransferEditor(QWidget):
         self.opacity = _number("Opacity of the point in %", "Type the point's opacity, per unit distance")
         self.color = ColorButton("Colour of the point")
         self.remove = _tool("Remove the point")
+        #: Its place is under More, which the panel decides.
+        self.glow = LabelledSlider(
+            "Glow of the point", ((0.0, 4.0),), 0.0, decimals=2, step=0.05, limits=(0, 100),
+            tip="Light that the tissue gives off by itself in its colour, per unit distance",
+        )  # fmt: skip
         self.opacity.setRange(0, 100)
         self.opacity.setDecimals(1)
         self.opacity.setSuffix(" %")
@@ -81,6 +86,20 @@ class TransferEditor(QWidget):
         self.color.opened.connect(lambda: self._editor.begin("Colour the point"))
         self.color.picked.connect(lambda rgb: plot.change_point("Colour the point", color=rgb))
         self.color.closed.connect(self._editor.end)
+        self.glow.edited.connect(self._set_glow)
+        self.glow.drag_started.connect(lambda: self._editor.begin("Let the point glow"))
+        self.glow.drag_finished.connect(self._editor.end)
+
+    def _set_glow(self, glow: float) -> None:
+        """Let the point give off light in the colour that it gives off now, else in its own."""
+        transfer = self.plot.transfer
+        if transfer is None or self.plot.selected < 0:
+            return
+        point = transfer.points[self.plot.selected]
+        red, green, blue = point.emission if any(point.emission) else point.color
+        part = glow / (max(red, green, blue) or 1.0)
+        emission = (red * part, green * part, blue * part)
+        self.plot.change_point("Let the point glow", not self.glow.slider.isSliderDown(), emission=emission)
 
     # -- showing ----------------------------------------------------------------------------------
     def show_scene(self, scene: Scene, origin: str, edited: bool) -> None:
@@ -105,10 +124,12 @@ class TransferEditor(QWidget):
         for widget in (self.value, self.opacity, self.color):
             widget.setEnabled(shown)
             widget.blockSignals(True)
+        self.glow.setEnabled(shown)
         if shown:
             assert transfer is not None
             self._fill(transfer.points[index].value, transfer.points[index].opacity)
             self.color.set_color(transfer.points[index].color)
+            self.glow.set_number(max(transfer.points[index].emission))
         else:
             for box in (self.value, self.opacity):
                 box.lineEdit().clear()
