@@ -119,7 +119,7 @@ def test_work_is_recovered_after_a_crash(make_window: Any, start_victim: Start, 
     kill(start_victim(51.0))
     window = make_window()
     qtbot.waitUntil(lambda: window.messages.kind == "question")
-    assert "Unsaved work on “ball.npy” was found" in window.messages.text
+    assert window.messages.text.startswith("Unsaved work on “ball.npy” from ")
     click(window, qtbot, "Recover")
     qtbot.waitUntil(lambda: window.editor.scene.volume is not None, timeout=20_000)
     assert window.editor.scene.lights[0].tilt == 51

@@ -145,7 +145,7 @@ def test_a_context_that_is_lost_again_and_again_is_a_message(
 
     monkeypatch.setattr(Device, "__init__", stillborn)
     move_light(window, 50.0)
-    assert "the graphics context was lost" in error_of(window, qtbot)
+    assert "The graphics context was lost" in error_of(window, qtbot)
     assert np.array_equal(hand.pixels(), before)
     monkeypatch.undo()
     click(window, qtbot, "Try again")

@@ -129,8 +129,10 @@ class RawDialog(QDialog):
 
     def _connect(self) -> None:
         self.proposals.activated.connect(self._take_guess)
-        for box in (*self.dims, *self.spacing, self.offset):
-            box.valueChanged.connect(self._on_typed)
+        for whole in (*self.dims, self.offset):
+            whole.valueChanged.connect(self._on_typed)
+        for length in self.spacing:
+            length.valueChanged.connect(self._on_typed)
         self.type.currentIndexChanged.connect(self._on_typed)
         self.big.toggled.connect(self._on_typed)
         self.buttons.accepted.connect(self.accept)

@@ -21,8 +21,9 @@ _FOLDER_LENGTH = 40
 def recent_files() -> list[str]:
     """Return the paths that were opened or saved last, the newest first."""
     kept = settings().value(_FILES, [])
-    paths = [kept] if isinstance(kept, str) else list(kept or [])
-    return [str(path) for path in paths if path][:MAX_RECENT]
+    # An INI file does not tell one text from a list of one.
+    paths = kept if isinstance(kept, list) else [kept]
+    return [path for path in paths if isinstance(path, str) and path][:MAX_RECENT]
 
 
 def remember(path: str) -> None:

@@ -41,9 +41,8 @@ class Recovery(QObject):
             slot = self._found[-1]
             about = slot.about()
             name = f" on “{about.name}”" if about.name else ""
-            text = (
-                f"Unsaved work{name} was found{_moment(about.when)}. The program had ended without saving it."
-            )
+            when = _moment(about.when)
+            text = f"Unsaved work{name}{when} was found: the program ended without saving it."
             self._bar.ask(text, {"Recover": self._recover, "Discard": self._discard})
 
     def _recover(self) -> None:
@@ -81,4 +80,4 @@ def _moment(when: float) -> str:
         return ""
     then, now = time.localtime(when), time.localtime()
     same_day = then[:3] == now[:3]
-    return time.strftime(", from %H:%M" if same_day else ", from %Y-%m-%d %H:%M", then)
+    return time.strftime(" from %H:%M" if same_day else " from %Y-%m-%d %H:%M", then)

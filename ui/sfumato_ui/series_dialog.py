@@ -98,7 +98,9 @@ class SeriesDialog(QDialog):
             if one.key == key:
                 ratio = self.devicePixelRatioF()
                 image = slice_image(plane, one.spacing[:2], round(THUMBNAIL * ratio))
-                self.list.topLevelItem(i).setIcon(0, _icon(_on_square(image, ratio)))
+                row = self.list.topLevelItem(i)
+                assert row is not None
+                row.setIcon(0, _icon(_on_square(image, ratio)))
 
 
 def is_volume(series: Any) -> bool:
@@ -129,9 +131,9 @@ def _list_of(series: Sequence[Any]) -> QTreeWidget:
     for column in range(len(_COLUMNS)):
         mode = QHeaderView.ResizeMode.ResizeToContents if column else QHeaderView.ResizeMode.Stretch
         made.header().setSectionResizeMode(column, mode)
-    for one in series:
-        made.addTopLevelItem(_row(one))
-    made.setCurrentItem(made.topLevelItem(largest_volume(series)))
+    rows = [_row(one) for one in series]
+    made.addTopLevelItems(rows)
+    made.setCurrentItem(rows[largest_volume(series)])
     return made
 
 

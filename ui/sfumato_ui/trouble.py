@@ -37,7 +37,7 @@ class Trouble(QObject):
         kept = "The last good picture stays" if self._driver.has_picture else "Nothing can be shown"
         answers = self._answers(remedy)
         hint = "." if answers else "; undo, or choose another technique."
-        self._bar.show_error(f"{message}. {kept}{hint}", answers)
+        self._bar.show_error(f"{message[:1].upper()}{message[1:]}. {kept}{hint}", answers)
 
     def _on_picture(self, picture: Picture) -> None:
         # A coarse picture, which a device may have room for, does not mend the full one.
