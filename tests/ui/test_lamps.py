@@ -13,6 +13,7 @@ from qtpy.QtWidgets import QApplication, QColorDialog
 
 from sfumato import Light, Scene
 from sfumato.scene.rigs import rigs
+from sfumato_ui.dial import ball_image
 from sfumato_ui.window import MainWindow
 
 LEFT = Qt.MouseButton.LeftButton
@@ -194,3 +195,13 @@ def test_what_a_technique_leaves_out_is_said(lit: MainWindow) -> None:
     assert "without light" in page.note.text()
     assert not page.rigs.isEnabled()
     assert "without light" in page.rigs.toolTip()
+
+
+def test_the_dial_shows_who_shines(lit: MainWindow) -> None:
+    def ball() -> np.ndarray:
+        image = ball_image(lit.editor.scene.lights, 60)
+        return np.frombuffer(image.constBits(), np.uint8).astype(float)
+
+    before = ball()
+    lit.editor.change("Solo", **{"lights.2.solo": True})
+    assert ball().mean() < before.mean() - 5, "a rim alone leaves the ball's front dark"

@@ -146,3 +146,21 @@ def test_choosing_a_technique_opens_its_section(window: MainWindow, hand: Any, q
     hand.drag_slider(names["Ambient"].control.slider, 0.15, 0.6)
     assert window.editor.scene.technique.ambient == pytest.approx(0.6, abs=0.05)
     hand.wait_for_picture()
+
+
+def test_generated_controls_tell_range_and_go_back_to_the_default(window: MainWindow, qtbot: QtBot) -> None:
+    page, editor = window.light_page, window.editor
+    page.more.set_open(True)
+    page.own.set_open(True)
+    names = {control.name: control for control in page.controls}
+    assert "From 0 to 1" in names["Ambient"].control.toolTip()
+    assert "texel/voxel" in next(c for c in page.controls if c.field.name == "resolution").control.toolTip()
+    falloff = next(c for c in page.controls if c.field.name == "falloff")
+    assert not falloff.reset.isVisible()
+    start = editor.scene.technique.falloff
+    editor.change("Falloff", **{"technique.falloff": "gaussian" if start == "linear" else "linear"})
+    assert falloff.reset.isVisible()
+    window.panel.widget(0).ensureWidgetVisible(falloff)
+    qtbot.mouseClick(falloff.reset, Qt.MouseButton.LeftButton)
+    assert editor.scene.technique.falloff == start
+    assert not falloff.reset.isVisible()

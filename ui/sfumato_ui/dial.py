@@ -26,6 +26,7 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from sfumato import Light
 from sfumato.scene import nearest_possible_tilt
+from sfumato.scene.light import shining
 
 from . import light_moves
 from .editing import Editor
@@ -247,7 +248,8 @@ class LightDial(QWidget):
         at = self.lamp_point(light)
         shown = QColor(*(round(255 * min(1.0, c) ** (1 / 2.2)) for c in light.color))
         painter.setPen(QPen(QColor("#1b1b1b"), 2))
-        painter.setBrush(shown if light.enabled else Qt.BrushStyle.NoBrush)
+        lit = any(light is one for one in shining(self._editor.scene.lights))
+        painter.setBrush(shown if lit else Qt.BrushStyle.NoBrush)
         painter.drawEllipse(at, 7.0 if selected else 5.0, 7.0 if selected else 5.0)
         if selected:
             painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -286,8 +288,8 @@ def ball_image(lights: tuple[Light, ...], pixels: int) -> QImage:
     r2 = x * x + y * y
     z = np.sqrt(np.clip(1 - r2, 0, None))
     linear = np.full((pixels, pixels, 3), 0.03)
-    for light in lights:
-        if not light.enabled or light.kind != "directional":
+    for light in shining(lights):
+        if light.kind != "directional":
             continue
         towards = light_moves.direction(light.tilt, light.rotation)
         cosine = x * towards[0] + y * towards[1] + z * towards[2]

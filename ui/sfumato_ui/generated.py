@@ -6,12 +6,14 @@ from typing import Any
 
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QWheelEvent
-from qtpy.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QWidget
+from qtpy.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QToolButton, QWidget
 
 from sfumato.scene import Field, Param
 
 from .editing import Editor
+from .icons import icon
 from .sliders import LabelledSlider, Range
+from .theme import current_theme
 
 
 class ChoiceBox(QComboBox):
@@ -44,8 +46,18 @@ def labelled(label: str, control: QWidget) -> QWidget:
 
 
 def tooltip_of(param: Param) -> str:
-    """Return meaning and source of a parameter as they are shown beside its control."""
-    return param.meaning + (f" ({param.source})" if param.source else "")
+    """Return meaning, source and range of a parameter as they are shown beside its control."""
+    words = param.meaning + (f" ({param.source})" if param.source else "")
+    limits = range_of(param)
+    return f"{words}. {limits}." if limits else words
+
+
+def range_of(param: Param) -> str:
+    """Return what a number may be, in words and with its unit; nothing for other parameters."""
+    bounds = {"from": param.ge, "above": param.gt, "to": param.le, "below": param.lt}
+    words = " ".join(f"{word} {bound:g}" for word, bound in bounds.items() if bound is not None)
+    unit = {"deg": "°", "": ""}.get(param.unit, f" {param.unit}")
+    return words.capitalize() + unit if words else ""
 
 
 def label_of(field: Field) -> str:
@@ -124,6 +136,10 @@ class ParamControl(QWidget):
         self.control.setToolTip(tooltip_of(field.param))
         choice = isinstance(self.control, ChoiceBox)
         layout.addWidget(labelled(self.name, self.control) if choice else self.control, 1)
+        self.reset: QToolButton | None = None
+        if not isinstance(self.control, LabelledSlider):
+            self.reset = self._reset_button()
+            layout.addWidget(self.reset)
         self.show_value()
 
     def _check_box(self) -> QCheckBox:
@@ -138,6 +154,17 @@ class ParamControl(QWidget):
         box.activated.connect(lambda index: self._set(box.itemData(index)))
         return box
 
+    def _reset_button(self) -> QToolButton:
+        button = QToolButton()
+        default = self.field.default
+        shown = ("on" if default else "off") if self.field.type is bool else str(default).replace("-", " ")
+        button.setAccessibleName(f"Reset {self.name}")
+        button.setToolTip(f"Back to {shown}")
+        button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        button.setIcon(icon("reset", current_theme()))
+        button.clicked.connect(lambda: self._set(default))
+        return button
+
     def _set(self, value: Any) -> None:
         self._editor.change(f"Change {self.name.lower()}", **{self._path: value})
 
@@ -147,6 +174,8 @@ class ParamControl(QWidget):
         if isinstance(self.control, LabelledSlider):
             self.control.set_number(value)
             return
+        assert self.reset is not None
+        self.reset.setVisible(value != self.field.default)
         self.control.blockSignals(True)
         if isinstance(self.control, QCheckBox):
             self.control.setChecked(value)
@@ -158,6 +187,8 @@ class ParamControl(QWidget):
         """Take the theme's icon colours."""
         if isinstance(self.control, LabelledSlider):
             self.control.refresh_theme()
+        elif self.reset is not None:
+            self.reset.setIcon(icon("reset", current_theme()))
 
 
 def controls_for(fields: dict[str, Field], level: str, editor: Editor, prefix: str) -> list[ParamControl]:

@@ -258,6 +258,8 @@ class RenderWorker(QObject):
                         self.progress.emit((index + done) / count)
                 seconds = time.perf_counter() - started
                 self.picture.emit(_picture(accumulation, request, seconds))
+                if not request.interactive and STILL_FRAMES <= index + 1 < count:
+                    self._lend_to_thumbnail(renderer)
                 if request.interactive:
                     self._choose_rung(seconds)
         self.progress.emit(1.0)
@@ -267,6 +269,13 @@ class RenderWorker(QObject):
     def _next_thumbnail(self) -> ThumbnailRequest | None:
         """The thumbnail to draw now, if there is time for one."""
         return self._thumbnails[0] if self._thumbnails and self._settled else None
+
+    def _lend_to_thumbnail(self, renderer: Any) -> None:
+        """Draw one thumbnail between two frames of a long refinement, whose picture is good by now."""
+        self._settled = True
+        thumbnail = self._next_thumbnail
+        if thumbnail is not None:
+            self._draw_thumbnail(renderer, thumbnail)
 
     def _draw_thumbnail(self, renderer: Any, request: ThumbnailRequest) -> None:
         """Draw a thumbnail; a wish stays open if a view or a save comes in between."""
@@ -295,7 +304,7 @@ class RenderWorker(QObject):
         """Tell whether to drop the work for a request: a drag's frame only for other data or technique."""
         newer = self._view
         if newer is None:
-            return self._save is not None and not request.interactive
+            return False
         if not request.interactive:
             return True
         old, new = request.scene, newer.scene
