@@ -178,7 +178,7 @@ class MainWindow(QMainWindow):
         geometry = kept.value("window/geometry")
         if geometry is None or not self.restoreGeometry(geometry):
             self.resize(1280, 720)
-        self.panel.setCurrentIndex(kept.value("panel/tab", 0, type=int))
+        self.panel.setCurrentIndex(int(str(kept.value("panel/tab", 0, type=int))))
         self.panel.currentChanged.connect(lambda tab: settings().setValue("panel/tab", tab))
         if not kept.value("hint/light_seen", False, type=bool):
             self.viewport.set_hint(HINT)
