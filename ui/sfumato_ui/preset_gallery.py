@@ -12,7 +12,7 @@ from sfumato.scene.presets import Preset
 
 from .theme import PICTURE_GREY
 from .transfer_editor.painting import small
-from .transfer_preview import swatch
+from .transfer_preview import ramp
 
 #: Width and height of a preset's picture in pixels.
 PICTURE = (84, 66)
@@ -98,10 +98,15 @@ class PresetGallery(QListWidget):
         rounded.addRoundedRect(QRectF(0, 0, *PICTURE), 4, 4)
         painter.setClipPath(rounded)
         painter.fillRect(0, 0, *PICTURE, PICTURE_GREY)
+        transfer = self._presets[row].transfer
         if row in self.pictures:
             painter.drawImage(QRectF(0, 0, *PICTURE), self.pictures[row])
-        strip = swatch(self._presets[row].transfer, PICTURE[0], _SWATCH + 4).pixmap(PICTURE[0], _SWATCH + 4)
-        painter.drawPixmap(QRectF(0, PICTURE[1] - _SWATCH, PICTURE[0], _SWATCH), strip, QRectF(strip.rect()))
+        else:
+            painter.setOpacity(0.4)
+            painter.drawImage(QRectF(0, 0, *PICTURE), ramp(transfer, PICTURE[0]))
+            painter.setOpacity(1.0)
+        strip = QRectF(0, PICTURE[1] - _SWATCH, PICTURE[0], _SWATCH)
+        painter.drawImage(strip, ramp(transfer, PICTURE[0]))
         painter.end()
         icon = QIcon()
         # The same for the selected state: Qt would tint it.
@@ -118,7 +123,7 @@ class PresetGallery(QListWidget):
         height = PICTURE[1] + self.fontMetrics().height() + 14
         self.setGridSize(QSize(width, height))
         rows = -(-self.count() // COLUMNS)
-        self.setFixedHeight(max(1, rows) * height + 2 * self.frameWidth() + 6)
+        self.setFixedHeight(max(1, rows) * height + 2 * self.frameWidth() + 2)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Keep the columns."""

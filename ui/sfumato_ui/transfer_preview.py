@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import numpy as np
-from qtpy.QtGui import QColor, QIcon, QPainter, QPixmap
+from qtpy.QtGui import QImage
 
 from sfumato import TransferFunction
 
-from .color_button import to_srgb
+
+def ramp(transfer: TransferFunction, width: int) -> QImage:
+    """Return a function's colours, from its first to its last visible value, as a picture one pixel high."""
+    return colours(transfer, *visible_range(transfer), width)
 
 
-def swatch(transfer: TransferFunction, width: int = 44, height: int = 20) -> QIcon:
-    """Return an icon of a transfer function's colours, from its first to its last visible value."""
-    values = visible_range(transfer)
-    colours = transfer.evaluate(np.linspace(*values, width))
-    pixmap = QPixmap(width, height)
-    pixmap.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(pixmap)
-    for x, row in enumerate(colours):
-        painter.setPen(to_srgb((float(row[0]), float(row[1]), float(row[2]))))
-        painter.drawLine(x, 2, x, height - 3)
-    painter.end()
-    return QIcon(pixmap)
+def colours(transfer: TransferFunction, low: float, high: float, width: int) -> QImage:
+    """Return a function's colours between two values as a picture one pixel high."""
+    linear = np.clip(transfer.evaluate(np.linspace(low, high, width))[:, :3], 0, 1)
+    srgb = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+    pixels = np.full((1, width, 4), 255, np.uint8)
+    pixels[0, :, :3] = np.rint(srgb * 255)
+    return QImage(pixels.tobytes(), width, 1, 4 * width, QImage.Format.Format_RGBA8888).copy()
 
 
 def visible_range(transfer: TransferFunction) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from qtpy.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterP
 from sfumato import TransferFunction
 
 from ..theme import Theme
+from ..transfer_preview import colours
 from .histogram import Histogram
 from .scale import OPACITY_LINES, Scale, ticks
 from .tissue import TISSUES
@@ -140,12 +141,7 @@ def draw_tissues(painter: QPainter, areas: Areas, scale: Scale, theme: Theme, ze
 # -- the function ---------------------------------------------------------------------------------
 def colours_of(transfer: TransferFunction, scale: Scale) -> QImage:
     """Return the function's colours over the plot's width as a picture one pixel high."""
-    count = max(2, round(scale.rect.width()))
-    linear = np.clip(transfer.evaluate(np.linspace(scale.low, scale.high, count))[:, :3], 0, 1)
-    srgb = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
-    pixels = np.full((1, count, 4), 255, np.uint8)
-    pixels[0, :, :3] = np.rint(srgb * 255)
-    return QImage(pixels.tobytes(), count, 1, 4 * count, QImage.Format.Format_RGBA8888).copy()
+    return colours(transfer, scale.low, scale.high, max(2, round(scale.rect.width())))
 
 
 def curve_of(transfer: TransferFunction, scale: Scale) -> list[QPointF]:
