@@ -9,6 +9,7 @@ from qtpy.QtGui import QColor
 from qtpy.QtWidgets import QAbstractButton, QAbstractSlider, QApplication, QLabel, QWidget
 
 from sfumato import Scene
+from sfumato.scene import ClipPlane
 from sfumato_ui.tab_order import in_visual_order
 from sfumato_ui.theme import PICTURE_GREY, TARGET, THEMES, Theme
 from sfumato_ui.window import MainWindow
@@ -17,7 +18,7 @@ from sfumato_ui.window import MainWindow
 @pytest.fixture(params=sorted(THEMES))
 def walked(request: pytest.FixtureRequest, make_window: object, ball_scene: Scene) -> MainWindow:
     """A window in each theme, with all sections open."""
-    window: MainWindow = make_window(ball_scene, size=(1280, 720))  # type: ignore[operator]
+    window: MainWindow = make_window(ball_scene.with_(clip=(ClipPlane((20, 20, 20)),)), size=(1280, 720))  # type: ignore[operator]
     window.set_theme(request.param)
     for section in (window.light_page.own, window.light_page.more, window.view_page.more):
         section.set_open(True)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from itertools import combinations
 
 import numpy as np
 
-from sfumato import Scene, Volume
+from sfumato import Scene
 from sfumato.scene import CropBox
 
 from ..clip_planes import THINNEST, Axis, axes_of, cropped
@@ -17,7 +16,7 @@ from .view import PictureView, Place
 #: Places on a face that looks at the eye (low face, high face), as fractions of its sides: before and behind
 #: each other as the two faces are, their handles must not be.
 _ASIDE = (0.25, 0.75)
-_GRID = tuple((u / 10, v / 10) for u in range(1, 10) for v in range(1, 10))
+_GRID = np.array([(u / 10, v / 10) for u in range(1, 10) for v in range(1, 10)])
 
 
 def edges(scene: Scene, view: PictureView) -> list[tuple[Place, Place]]:
@@ -46,15 +45,8 @@ def handles(scene: Scene, view: PictureView, held: FaceGrip | None = None) -> li
                 continue
             value = high_mm if high != axis.flipped else low_mm
             name = f"Crop {axis.side(high)}: {value:.1f} mm"
-            depth = float(
-                (point - np.asarray(view.camera.position)) @ np.asarray(view.camera.basis().forward)
-            )
-            made.append(
-                (
-                    depth,
-                    Handle(key, name, place, along(view, point, axis.direction)),
-                )
-            )
+            handle = Handle(key, name, place, along(view, point, axis.direction))
+            made.append((view.depth(point), handle))
     return [handle for _, handle in sorted(made, key=lambda pair: pair[0])]
 
 
@@ -75,24 +67,25 @@ def face_spot(scene: Scene, view: PictureView, axis: Axis, high: bool) -> Place:
 
     In the middle, aside if the face looks at the eye, and elsewhere on the face if that is outside the picture.
     """
-    middle = on_face(scene, axis, high, 0.5, 0.5)
-    share = _ASIDE[high] if view.faces(middle, axis.direction) else 0.5
-    if view.shows(on_face(scene, axis, high, share, share)):
+    share = _ASIDE[high] if view.faces(on_face(scene, axis, high, 0.5, 0.5), axis.direction) else 0.5
+    wanted = np.array([share, share])
+    if view.shows(on_face(scene, axis, high, share, share)[None])[0]:
         return share, share
-    others = sorted(_GRID, key=lambda uv: math.hypot(uv[0] - share, uv[1] - share))
-    return next((uv for uv in others if view.shows(on_face(scene, axis, high, *uv))), (share, share))
+    order = np.argsort(np.linalg.norm(_GRID - wanted, axis=1), kind="stable")
+    corners = [on_face(scene, axis, high, u, v) for u, v in ((0, 0), (1, 0), (0, 1))]
+    sides = np.array([corners[1] - corners[0], corners[2] - corners[0]])
+    shown = view.shows(corners[0] + _GRID[order] @ sides)
+    u, v = _GRID[order[int(np.argmax(shown))]] if shown.any() else wanted
+    return float(u), float(v)
 
 
 def on_face(scene: Scene, axis: Axis, high: bool, u: float, v: float) -> np.ndarray:
     """Return a point of a face in world mm, by fractions of the face's two sides."""
     volume, crop = scene.volume, scene.crop
     assert volume is not None
-    share = np.insert(np.array([u, v]), axis.index, float(high))
-    return _to_world(volume, np.asarray(crop.low) + share * np.subtract(crop.high, crop.low))
-
-
-def _to_world(volume: Volume, at: np.ndarray) -> np.ndarray:
+    share = np.insert(np.array([u, v], dtype=float), axis.index, float(high))
     matrix = volume.world_from_texture
+    at = np.asarray(crop.low) + share * np.subtract(crop.high, crop.low)
     return np.asarray(matrix[:3, :3] @ at + matrix[:3, 3])
 
 

@@ -53,8 +53,8 @@ def pivot(scene: Scene, view: PictureView, plane: ClipPlane) -> np.ndarray:
     corners = outline(scene, plane)
     if len(corners):
         middle = np.asarray(corners.mean(axis=0))
-        others = (middle + share * (corner - middle) for share in _OUTWARDS for corner in corners)
-        return middle if view.shows(middle) else next(filter(view.shows, others), middle)
+        spots = np.concatenate([middle[None], *(middle + share * (corners - middle) for share in _OUTWARDS)])
+        return np.asarray(spots[int(np.argmax(view.shows(spots)))])
     normal, centre = unit(plane.normal), np.asarray(scene.volume.center)
     return np.asarray(centre + normal * float(normal @ (np.asarray(plane.point) - centre)))
 
@@ -85,7 +85,7 @@ def arm(view: PictureView, plane: ClipPlane) -> np.ndarray:
 
 def arm_place(view: PictureView, middle: Place, plane: ClipPlane) -> Place:
     """Return where the end of a plane's arm is drawn: never so near that it hides the other handle."""
-    x, y, _ = ARM * arm(view, plane)
+    x, y, _ = (float(c) for c in ARM * arm(view, plane))
     length = math.hypot(x, y)
     if length < 1e-6:
         return middle[0] + LEAST_ARM, middle[1]

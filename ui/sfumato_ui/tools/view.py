@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -29,34 +30,47 @@ class PictureView:
     width: float
     height: float
 
+    @cached_property
+    def _eye(self) -> np.ndarray:
+        return np.asarray(self.camera.position, dtype=float)
+
+    @cached_property
+    def _axes(self) -> np.ndarray:
+        """Right, up and forward."""
+        basis = self.camera.basis()
+        return np.array([basis.right, basis.up, basis.forward])
+
+    @cached_property
+    def _half(self) -> np.ndarray:
+        return np.array(self.camera.half_extent(self.width / self.height))
+
+    def places(self, points: np.ndarray) -> np.ndarray:
+        """Return where world points (n, 3) lie in the picture; (n, 2), NaN if behind the eye."""
+        x, y, depth = self._axes @ (np.asarray(points, dtype=float) - self._eye).T
+        if self.camera.parallel_projection:
+            scale = np.ones_like(depth)
+        else:
+            scale = np.where(depth < NEAR * self.camera.distance, np.nan, depth)
+        x = x / (self._half[0] * scale) - self.camera.window_center[0]
+        y = y / (self._half[1] * scale) - self.camera.window_center[1]
+        return np.stack([(x + 1) / 2 * self.width, (1 - y) / 2 * self.height], axis=-1)
+
     def place(self, point: np.ndarray) -> Place | None:
         """Return where a world point lies in the picture, or None if it is behind the eye."""
-        camera, basis = self.camera, self.camera.basis()
-        arm = np.asarray(point, dtype=float) - np.asarray(camera.position)
-        depth = float(arm @ np.asarray(basis.forward))
-        if not camera.parallel_projection and depth < NEAR * camera.distance:
-            return None
-        half_x, half_y = camera.half_extent(self.width / self.height)
-        scale = 1.0 if camera.parallel_projection else depth
-        x = float(arm @ np.asarray(basis.right)) / (half_x * scale) - camera.window_center[0]
-        y = float(arm @ np.asarray(basis.up)) / (half_y * scale) - camera.window_center[1]
-        return (x + 1) / 2 * self.width, (1 - y) / 2 * self.height
+        x, y = self.places(np.asarray(point)[None])[0]
+        return None if np.isnan(x) else (float(x), float(y))
 
-    def shows(self, point: np.ndarray) -> bool:
-        """Tell whether a world point lies in the picture, clear of its edge."""
-        place = self.place(point)
-        return (
-            place is not None
-            and MARGIN <= place[0] <= self.width - MARGIN
-            and MARGIN <= place[1] <= self.height - MARGIN
-        )
+    def shows(self, points: np.ndarray) -> np.ndarray:
+        """Tell which world points (n, 3) lie in the picture, clear of its edge."""
+        at = self.places(points)
+        inside = (at >= MARGIN) & (at <= np.array([self.width, self.height]) - MARGIN)
+        return np.asarray(inside.all(axis=-1))
 
     def segment(self, a: np.ndarray, b: np.ndarray) -> tuple[Place, Place] | None:
         """Return where the part of a segment that is before the eye lies."""
         near = NEAR * self.camera.distance * 1.001
-        forward = np.asarray(self.camera.basis().forward)
         ends = [np.asarray(p, dtype=float) for p in (a, b)]
-        depths = [float((p - np.asarray(self.camera.position)) @ forward) - near for p in ends]
+        depths = [self.depth(p) - near for p in ends]
         if not self.camera.parallel_projection and min(depths) < 0:
             if max(depths) <= 0:
                 return None
@@ -65,6 +79,10 @@ class PictureView:
             ends[behind] = ends[1 - behind] + share * (ends[behind] - ends[1 - behind])
         first, second = self.place(ends[0]), self.place(ends[1])
         return (first, second) if first is not None and second is not None else None
+
+    def depth(self, point: np.ndarray) -> float:
+        """Return how far before the eye a world point lies, in mm along the view."""
+        return float(self._axes[2] @ (point - self._eye))
 
     def fractions(self, place: Place) -> Place:
         """Return a place in half widths and half heights from the centre, y up."""
@@ -76,18 +94,16 @@ class PictureView:
 
     def mm_per_pixel(self, point: np.ndarray) -> float:
         """Return how many mm across the view one pixel is at a world point's depth."""
-        half = self.camera.half_extent(self.width / self.height)[1]
+        across = float(2 * self._half[1] / self.height)
         if self.camera.parallel_projection:
-            return 2 * half / self.height
-        arm = np.asarray(point) - np.asarray(self.camera.position)
-        depth = max(float(arm @ np.asarray(self.camera.basis().forward)), NEAR * self.camera.distance)
-        return 2 * half * depth / self.height
+            return across
+        return across * max(self.depth(point), NEAR * self.camera.distance)
 
     def sight(self, point: np.ndarray) -> np.ndarray:
         """Return the unit direction in which the eye sees a world point."""
         if self.camera.parallel_projection:
-            return np.asarray(self.camera.basis().forward)
-        arm = np.asarray(point) - np.asarray(self.camera.position)
+            return np.asarray(self._axes[2])
+        arm = np.asarray(point) - self._eye
         return np.asarray(arm / np.linalg.norm(arm))
 
     def faces(self, point: np.ndarray, axis: np.ndarray) -> bool:
