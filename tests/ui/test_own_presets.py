@@ -116,6 +116,18 @@ def test_renaming_and_deleting(page: MaterialPage, user: Any, qtbot: QtBot) -> N
     assert files(page) == []
 
 
+def test_the_name_is_for_the_preset_that_was_asked_about(page: MaterialPage, user: Any, qtbot: QtBot) -> None:
+    save_as(page, qtbot, "One")
+    user.press(Qt.Key.Key_F2)
+    where = page.presets.visualItemRect(page.presets.item(0)).center()
+    qtbot.mouseClick(page.presets.viewport(), Qt.MouseButton.LeftButton, pos=where)
+    chosen = page.window().editor.scene
+    page.ask.text.setFocus()
+    type_name(page, qtbot, "Two")
+    assert files(page) == ["two.json"]
+    assert page.window().editor.scene == chosen
+
+
 def test_built_in_presets_are_neither_renamed_nor_deleted(page: MaterialPage, user: Any) -> None:
     page.presets.setFocus()
     user.press(Qt.Key.Key_Right)

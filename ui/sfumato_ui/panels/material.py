@@ -36,7 +36,8 @@ class MaterialPage(Page):
         self._presets: tuple[Preset, ...] = ()
         self._volume: object = None
         self._thumbnails: Thumbnails | None = None
-        self._answer = "save"
+        #: What is asked below the heading, and about which own preset.
+        self._answer, self._target = "save", ""
         self.own = OwnPresets()
         self._told: tuple[str, ...] = ()
         self.bar, self.ask, self.presets = PresetBar(), AskLine(), PresetGallery()
@@ -265,7 +266,7 @@ class MaterialPage(Page):
         if self._is_own(row):
             assert row is not None
             old = self._presets[row].name
-            self._answer = "rename"
+            self._answer, self._target = "rename", old
             same = old.lower()
             self.ask.ask_name(
                 "Rename", old, lambda new: "" if new.strip().lower() == same else self._complaint(new)
@@ -280,23 +281,24 @@ class MaterialPage(Page):
         row = self._current()
         if self._is_own(row):
             assert row is not None
-            self._answer = "delete"
-            self.ask.ask_yes("Delete", f"Delete the preset {self._presets[row].name}? Its file goes, too.")
+            self._answer, self._target = "delete", self._presets[row].name
+            self.ask.ask_yes("Delete", f"Delete the preset {self._target}? Its file goes, too.")
 
     def _answered(self, name: str) -> None:
-        transfer, row = self._editor.scene.transfer, self._current()
+        transfer = self._editor.scene.transfer
+        renamed = self._answer == "rename" and transfer is not None and transfer.name == self._target
         try:
-            if self._answer == "save" and transfer is not None:
+            if self._answer == "rename":
+                self.own.rename(self._target, name)
+            elif self._answer == "delete":
+                self.own.delete(self._target)
+            elif transfer is not None:
                 self.own.save(name, transfer)
-            elif row is not None and self._answer == "rename":
-                self.own.rename(self._presets[row].name, name)
-            elif row is not None and self._answer == "delete":
-                self.own.delete(self._presets[row].name)
         except SfumatoError as error:
             self._editor.rejected.emit(str(error))
             return
         self._fill()
-        if self._answer != "delete" and transfer is not None:
+        if transfer is not None and (renamed or self._answer == "save"):
             # The scene's function is called as its preset is, so that what is made of it knows where it is from.
             self._editor.change("Name the preset", True, transfer=replace(transfer, name=name))
         self.refresh()

@@ -92,7 +92,7 @@ class TransferCanvas(QWidget):
         self.update()
 
     def _show_volume(self, scene: Scene) -> None:
-        self._selected = -1
+        self._selected, self._drag = -1, None
         if scene.volume is None:
             return
         self.zero = hounsfield_zero(scene.volume)

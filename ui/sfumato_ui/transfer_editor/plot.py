@@ -139,12 +139,12 @@ class TransferPlot(TransferCanvas):
     def _point_mover(self, start: QPointF) -> Callable[[QMouseEvent], None]:
         assert self.transfer is not None
         scale, point = self.scale, self.transfer.points[self.selected]
-        held = scale.at(point.value, point.opacity) - start
+        held, (low, high) = scale.at(point.value, point.opacity) - start, self._whole
 
         def move(event: QMouseEvent) -> None:
             transfer, at = self.transfer, event.position() + held
             if transfer is not None and self.selected >= 0:
-                value = min(max(scale.value(at.x()), self._whole[0]), self._whole[1])
+                value = min(max(scale.value(at.x()), low), high)
                 value = transfer_edit.between_neighbours(transfer, self.selected, value)
                 self.change_point("Move the point", value=value, opacity=scale.opacity(at.y()))
 
