@@ -150,7 +150,7 @@ def test_sixteen_bit_encoding():
 
 def test_no_patient_and_no_folder_in_the_files(tmp_path, still_life):
     info = sfumato.VolumeInfo(
-        path="/home/jane/DOE^JOHN 1950/series 3", modality="CT", name="DOE^JOHN thorax", notices=("Doe",)
+        path="/home/jane/DOE^JOHN 1950/Doe 3", modality="CT", name="DOE^JOHN thorax", notices=("Doe",)
     )
     volume = sfumato.Volume(still_life.data, info=info)
     for ending in ("png", "tif"):

@@ -133,3 +133,43 @@ def test_linear_pictures(tmp_path):
         assert Scene.from_json(json.loads(file.header()["sfumato-scene"])["scene"]) == scene
     with pytest.raises(SfumatoError, match=r"\.exr or \.npy"):
         write_linear(tmp_path / "a.tif", pixels)
+
+
+def test_dicom_is_found_by_content_not_by_name(tmp_path, picture):
+    pytest.importorskip("highdicom")
+    from pydicom.dataset import FileDataset, FileMetaDataset
+    from pydicom.uid import CTImageStorage, ExplicitVRLittleEndian, generate_uid
+
+    import sfumato
+
+    study = tmp_path / "DOE^JOHN"
+    study.mkdir()
+    series, uid = generate_uid(), generate_uid()
+    for i in range(4):
+        meta = FileMetaDataset()
+        meta.TransferSyntaxUID, meta.MediaStorageSOPClassUID = ExplicitVRLittleEndian, CTImageStorage
+        meta.MediaStorageSOPInstanceUID = generate_uid()
+        image = FileDataset(None, {}, file_meta=meta, preamble=b"\0" * 128)
+        image.SOPClassUID, image.SOPInstanceUID = CTImageStorage, meta.MediaStorageSOPInstanceUID
+        image.StudyInstanceUID, image.SeriesInstanceUID, image.FrameOfReferenceUID = uid, series, uid
+        image.Modality, image.PatientName, image.SeriesDescription = "CT", "DOE^JOHN", "Doe's head"
+        image.InstanceNumber = i + 1
+        image.ImagePositionPatient, image.ImageOrientationPatient = [0, 0, i * 2.0], [1, 0, 0, 0, 1, 0]
+        image.PixelSpacing, image.SliceThickness, image.Rows, image.Columns = [1.0, 1.0], 2.0, 8, 8
+        image.SamplesPerPixel, image.PhotometricInterpretation = 1, "MONOCHROME2"
+        image.BitsAllocated, image.BitsStored, image.HighBit, image.PixelRepresentation = 16, 16, 15, 1
+        image.RescaleSlope, image.RescaleIntercept = 1, -1024
+        image.PixelData = np.full((8, 8), 100 * i, "<i2").tobytes()
+        image.save_as(study / f"JOHN{i}.dcm", enforce_file_format=True)
+    scene = Scene(volume=sfumato.load(study))
+    text = scene_text(scene)
+    assert "JOHN" not in text
+    assert "Doe" not in text
+    assert str(uid) not in text
+    assert str(series) not in text
+    write_png(tmp_path / "a.png", picture, scene)
+    assert open_png(tmp_path / "a.png") == scene
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "a.png").rename(tmp_path / "elsewhere" / "a.png")
+    with pytest.raises(LoadError, match="not beside it"):
+        open_png(tmp_path / "elsewhere" / "a.png")

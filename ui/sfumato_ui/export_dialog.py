@@ -106,6 +106,7 @@ class ExportDialog(QDialog):
     def _lay_out(self, orthographic: bool) -> None:
         form = QFormLayout()
         form.setSpacing(8)
+        form.setLabelAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         form.addRow("Size", self.preset)
         form.addRow("Pixels", _pair(self.pixels[0], self.pixels[1]))
         form.addRow("On paper", _pair(self.lengths[0], self.lengths[1]))

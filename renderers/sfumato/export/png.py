@@ -2,7 +2,9 @@
 
 The scene is JSON in an ``iTXt`` chunk with the keyword ``sfumato-scene``:
 ``{"program": "sfumato 0.1.0", "scene": {…}}``. The scene names its volume by content hash and file name;
-folders, which can tell more than a picture should, are left out.
+folders, which can tell more than a picture should, are left out. So are the names of DICOM files and of
+folders, which are often a patient's: such a volume is looked for beside the picture by its content alone.
+A TIFF of ours carries the same text as its description.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ import json
 import os
 import struct
 import zlib
+from itertools import islice
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, BinaryIO
 
@@ -23,6 +26,8 @@ from .streams import KEYWORD, PngStream
 from .tiff_text import MAGIC, MAX_TEXT, is_tiff_of_ours, read_tiff_text
 
 SAMPLE = "sample:"
+#: Folders beside a picture in which a volume without a name is looked for.
+MAX_FOLDERS = 32
 #: File name endings of pictures that may carry a scene.
 TIFF_SUFFIXES = (".tif", ".tiff")
 
@@ -63,13 +68,13 @@ def write_png(
 
 
 def scene_text(scene: Scene) -> str:
-    """Return the JSON that goes into a picture: the scene, without the folders of its files."""
+    """Return the JSON that goes into a picture: the scene, without what may name a person or a place."""
     from .. import __version__
 
     data = scene.to_json()
     for part in [data["volume"], *data["geometry"]]:
         if isinstance(part, dict) and part.get("path"):
-            part["path"] = _file_name(part["path"])
+            part["path"] = "" if _may_name_a_patient(part["path"]) else _file_name(part["path"])
     return json.dumps({"program": f"sfumato {__version__}", "scene": data})
 
 
@@ -165,13 +170,16 @@ def open_png(path: str | os.PathLike[str], volume: Volume | None = None) -> Scen
 
 
 def _volume_beside(picture: Path, reference: Any) -> Volume:
-    from ..io import load
+    from ..io import load_known
 
-    named = reference.get("path") if isinstance(reference, dict) else None
-    if not isinstance(named, str) or not named:
+    named, key = (reference.get(k) for k in ("path", "hash")) if isinstance(reference, dict) else (None, None)
+    key = key if isinstance(key, str) else None
+    if not isinstance(named, str) or not (named or key):
         raise LoadError(
             picture, "the scene in this picture does not say where its volume is", "name the volume too"
         )
+    if not named:
+        return _dicom_beside(picture, str(key))
     # Only ever a name beside the picture: what a stranger's picture says is no path to follow.
     name = _file_name(named)
     place: str | Path = name if name.startswith(SAMPLE) else picture.parent / name
@@ -179,12 +187,42 @@ def _volume_beside(picture: Path, reference: Any) -> Volume:
         raise LoadError(
             picture, f"its volume {name!r} is not beside it", "put it there, or name the volume too"
         )
-    volume = load(place)
-    if reference.get("hash") not in (None, volume.key):
-        raise LoadError(
-            place, "this is not the volume of the picture (its content differs)", "name the right volume too"
-        )
-    return volume
+    return load_known(place, key)
+
+
+def _dicom_beside(picture: Path, key: str) -> Volume:
+    """Return the DICOM volume with a key from the picture's folder or a folder beside the picture."""
+    from ..io import load_known
+
+    here = picture.parent
+    for place in [here, *sorted(p for p in here.iterdir() if p.is_dir())][:MAX_FOLDERS]:
+        if any(_is_dicom(p) for p in islice(place.iterdir(), 8) if p.is_file()):
+            try:
+                return load_known(place, key)
+            except LoadError:
+                continue
+    raise LoadError(
+        picture, "its DICOM images are not beside it", "put the picture beside their folder, or name it too"
+    )
+
+
+def _is_dicom(path: Path) -> bool:
+    from ..io.dicom_header import is_dicom
+
+    try:
+        return is_dicom(path)
+    except OSError:
+        return False
+
+
+def _may_name_a_patient(path: str) -> bool:
+    """Tell whether a volume was read from DICOM files, or from a folder that is no store of arrays."""
+    if path.startswith(SAMPLE):
+        return False
+    place = Path(path)
+    if place.is_dir():
+        return place.suffix.lower() != ".zarr"
+    return place.suffix.lower() in ("", ".dcm", ".dicom", ".ima") or (place.is_file() and _is_dicom(place))
 
 
 def _file_name(path: str) -> str:

@@ -15,8 +15,8 @@ from ..scene import Camera
 
 #: Share of the picture's width that the bar fills at most.
 SHARE = 0.25
-#: Height of the letters: 7 points in print, else a share of the picture's shorter side.
-POINTS, LETTERS = 7.0, 1 / 40
+#: Height of capitals: 5 points in print (a font of 7 points), else a share of the picture's shorter side.
+POINTS, LETTERS = 5.0, 1 / 48
 _LEAST_LETTERS = 11.0
 
 
