@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QPainter
 
@@ -84,10 +85,9 @@ class ClipTool(HandleTool):
             if not plane.enabled:
                 continue
             corners = planes.outline(scene, plane)
-            for j in range(len(corners)):
-                segment = view.segment(corners[j - 1], corners[j])
-                if segment is not None:
-                    draw_line(painter, *segment, strong=i == self._clips.selected)
+            around = np.stack([np.arange(len(corners)) - 1, np.arange(len(corners))], axis=-1)
+            for a, b in view.segments(corners, around):
+                draw_line(painter, a, b, strong=i == self._clips.selected)
             middle = view.place(planes.pivot(scene, view, plane))
             if middle is not None:
                 draw_line(painter, middle, planes.arm_place(view, middle, plane))

@@ -13,6 +13,8 @@ from ..clip_planes import THINNEST, Axis, axes_of, cropped
 from .handles import Handle
 from .view import PictureView, Place
 
+#: The box's edges as two rows of corners. Corners are counted in binary: an edge joins two that differ in one bit.
+EDGES = np.array([(a, b) for a, b in combinations(range(8), 2) if (a ^ b).bit_count() == 1]).T
 #: Places on a face that looks at the eye (low face, high face), as fractions of its sides: before and behind
 #: each other as the two faces are, their handles must not be.
 _ASIDE = (0.25, 0.75)
@@ -23,10 +25,7 @@ def edges(scene: Scene, view: PictureView) -> list[tuple[Place, Place]]:
     """Return the visible parts of the box's twelve edges."""
     assert scene.volume is not None
     corners = scene.volume.corners(scene.crop.low, scene.crop.high)
-    # Corners are counted in binary, so an edge joins two whose numbers differ in one bit.
-    pairs = [(a, b) for a, b in combinations(range(8), 2) if (a ^ b).bit_count() == 1]
-    found = [view.segment(corners[a], corners[b]) for a, b in pairs]
-    return [segment for segment in found if segment is not None]
+    return view.segments(corners, EDGES.T)
 
 
 def handles(scene: Scene, view: PictureView, held: FaceGrip | None = None) -> list[Handle]:

@@ -120,7 +120,8 @@ class LightTool(HandleTool):
         for i, light in reversed(list(enumerate(self._editor.scene.lights))):
             handle = handles[f"lamp.{i}"]
             hot = handle.key in (self.hovered, self.taken)
-            draw_lamp(painter, view, handle.at, light, selected=handle.key == self._selected, hot=hot)
+            on = light in self._editor.scene.active_lights
+            draw_lamp(painter, view, handle.at, light, on=on, selected=handle.key == self._selected, hot=hot)
         shown = handles.get(self.hovered) or handles.get(self._selected)
         if shown is not None:
             draw_label(painter, view, shown)
@@ -131,7 +132,7 @@ def paint_one(painter: QPainter, view: PictureView, scene: Scene, light: Light) 
     draw_guide(painter, view)
     tilt, rotation = seen_angles(scene, light)
     at = _place(view, *light_moves.to_disc(tilt, rotation))
-    draw_lamp(painter, view, at, light, selected=True, hot=True)
+    draw_lamp(painter, view, at, light, on=light in scene.active_lights, selected=True, hot=True)
     draw_label(painter, view, Handle("lamp", f"tilt {tilt:.0f}°, rotation {rotation % 360:.0f}°", at))
 
 
@@ -160,9 +161,9 @@ def draw_guide(painter: QPainter, view: PictureView) -> None:
 
 
 def draw_lamp(
-    painter: QPainter, view: PictureView, at: Place, light: Light, *, selected: bool, hot: bool
+    painter: QPainter, view: PictureView, at: Place, light: Light, *, on: bool, selected: bool, hot: bool
 ) -> None:
-    """Draw a lamp in its colour, hollow if it is muted, with a spoke and a ring if it is selected."""
+    """Draw a lamp in its colour, crossed out if it does not shine, with a spoke and a ring if it is selected."""
     size = 11.0 if hot else 9.0
     if selected:
         draw_line(painter, (view.width / 2, view.height / 2), at)
@@ -170,9 +171,9 @@ def draw_lamp(
         painter.setPen(QPen(QColor(DARK.accent), 2.5))
         painter.drawEllipse(QPointF(*at), size + 5, size + 5)
     painter.setPen(QPen(QColor("#1b1b1b"), 2))
-    painter.setBrush(to_srgb(_full(light.color)) if light.enabled else QColor(60, 60, 60))
+    painter.setBrush(to_srgb(_full(light.color)) if on else QColor(60, 60, 60))
     painter.drawEllipse(QPointF(*at), size, size)
-    if not light.enabled:
+    if not on:
         reach = size * math.sqrt(0.5)
         painter.setPen(QPen(QColor("#f4f4f4"), 2))
         box = QRectF(at[0] - reach, at[1] - reach, 2 * reach, 2 * reach)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from sfumato import Scene
 from sfumato.scene import ClipPlane
 
 from ..clip_planes import moved_to, unit, vec
-from .crop import along
+from .crop import EDGES, along
 from .handles import Handle
 from .view import PictureView, Place
 
@@ -29,14 +28,10 @@ def outline(scene: Scene, plane: ClipPlane) -> np.ndarray:
     corners = scene.volume.corners(scene.crop.low, scene.crop.high)
     normal = unit(plane.normal)
     side = (corners - np.asarray(plane.point)) @ normal
-    found = [
-        corners[a] + (corners[b] - corners[a]) * (side[a] / (side[a] - side[b]))
-        for a, b in combinations(range(8), 2)
-        if (a ^ b).bit_count() == 1 and (side[a] > 0) != (side[b] > 0)
-    ]
-    if len(found) < 3:
+    a, b = EDGES[:, (side[EDGES[0]] > 0) != (side[EDGES[1]] > 0)]
+    if len(a) < 3:
         return np.zeros((0, 3))
-    points = np.array(found)
+    points = corners[a] + (corners[b] - corners[a]) * (side[a] / (side[a] - side[b]))[:, None]
     middle = points.mean(axis=0)
     across = unit(points[0] - middle)
     angles = np.arctan2((points - middle) @ np.cross(normal, across), (points - middle) @ across)
@@ -79,8 +74,7 @@ def handles(scene: Scene, view: PictureView) -> list[Handle]:
 
 def arm(view: PictureView, plane: ClipPlane) -> np.ndarray:
     """Return the unit direction to the side that is cut away, in the camera's axes (right, up, back)."""
-    basis = view.camera.basis()
-    return np.asarray(np.array([basis.right, basis.up, basis.back]) @ -unit(plane.normal))
+    return np.asarray(view.camera_axes @ -unit(plane.normal))
 
 
 def arm_place(view: PictureView, middle: Place, plane: ClipPlane) -> Place:
@@ -146,8 +140,7 @@ class TiltGrip:
 
 def turned(plane: ClipPlane, middle: np.ndarray, view: PictureView, tip: np.ndarray) -> ClipPlane:
     """Return a plane through a point whose arm has a direction given in the camera's axes."""
-    basis = view.camera.basis()
-    away = np.array([basis.right, basis.up, basis.back]).T @ tip
+    away = view.camera_axes.T @ tip
     return replace(plane, point=vec(middle), normal=vec(-unit(away)))
 
 

@@ -12,8 +12,8 @@ from sfumato.scene.picking import ray_through
 
 Place = tuple[float, float]
 
-#: Sine of the angle to the line of sight below which an axis counts as pointing at the eye (15 degrees).
-FACING = 0.26
+#: Cosine of the angle to the line of sight above which an axis counts as pointing at the eye (15 degrees).
+FACING = 0.966
 #: Distance from the picture's edge in pixels within which a handle could not be taken.
 MARGIN = 14.0
 #: What counts as endlessly far, in mm.
@@ -44,13 +44,22 @@ class PictureView:
     def _half(self) -> np.ndarray:
         return np.array(self.camera.half_extent(self.width / self.height))
 
+    @cached_property
+    def _near(self) -> float:
+        return NEAR * self.camera.distance
+
+    @property
+    def camera_axes(self) -> np.ndarray:
+        """The camera's axes right, up and back in world space, as rows."""
+        return np.asarray(self._axes * [[1], [1], [-1]])
+
     def places(self, points: np.ndarray) -> np.ndarray:
         """Return where world points (n, 3) lie in the picture; (n, 2), NaN if behind the eye."""
         x, y, depth = self._axes @ (np.asarray(points, dtype=float) - self._eye).T
         if self.camera.parallel_projection:
             scale = np.ones_like(depth)
         else:
-            scale = np.where(depth < NEAR * self.camera.distance, np.nan, depth)
+            scale = np.where(depth < self._near, np.nan, depth)
         x = x / (self._half[0] * scale) - self.camera.window_center[0]
         y = y / (self._half[1] * scale) - self.camera.window_center[1]
         return np.stack([(x + 1) / 2 * self.width, (1 - y) / 2 * self.height], axis=-1)
@@ -66,9 +75,18 @@ class PictureView:
         inside = (at >= MARGIN) & (at <= np.array([self.width, self.height]) - MARGIN)
         return np.asarray(inside.all(axis=-1))
 
+    def segments(self, corners: np.ndarray, pairs: np.ndarray) -> list[tuple[Place, Place]]:
+        """Return the visible parts of the segments between corners (n, 3), given by pairs of indices (m, 2)."""
+        at = self.places(corners)
+        if np.isfinite(at).all():
+            spots = [(float(x), float(y)) for x, y in at]
+            return [(spots[a], spots[b]) for a, b in pairs]
+        found = [self.segment(corners[a], corners[b]) for a, b in pairs]
+        return [segment for segment in found if segment is not None]
+
     def segment(self, a: np.ndarray, b: np.ndarray) -> tuple[Place, Place] | None:
         """Return where the part of a segment that is before the eye lies."""
-        near = NEAR * self.camera.distance * 1.001
+        near = self._near * 1.001
         ends = [np.asarray(p, dtype=float) for p in (a, b)]
         depths = [self.depth(p) - near for p in ends]
         if not self.camera.parallel_projection and min(depths) < 0:
@@ -97,7 +115,7 @@ class PictureView:
         across = float(2 * self._half[1] / self.height)
         if self.camera.parallel_projection:
             return across
-        return across * max(self.depth(point), NEAR * self.camera.distance)
+        return across * max(self.depth(point), self._near)
 
     def sight(self, point: np.ndarray) -> np.ndarray:
         """Return the unit direction in which the eye sees a world point."""
@@ -108,7 +126,7 @@ class PictureView:
 
     def faces(self, point: np.ndarray, axis: np.ndarray) -> bool:
         """Tell whether a unit axis at a point runs so much along the sight that it cannot be followed."""
-        return float(np.linalg.norm(np.cross(axis, self.sight(point)))) < FACING
+        return abs(float(axis @ self.sight(point))) > FACING
 
     def travel(self, origin: np.ndarray, axis: np.ndarray, start: Place, now: Place) -> float:
         """Return how far in mm a hand has moved a point along a unit axis.
