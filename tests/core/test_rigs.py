@@ -30,7 +30,8 @@ def test_the_six_rigs() -> None:
     assert rigs()["top-left"].lights == (Light(),), "a new scene is lit by the first rig"
     for name, rig in rigs().items():
         assert rig.id == name
-        assert rig.title and rig.description
+        assert rig.title
+        assert rig.description
         assert 1 <= len(rig.lights) <= MAX_LIGHTS
         names = [light.name for light in rig.lights]
         assert len(set(names)) == len(names)

@@ -13,6 +13,7 @@ from qtpy.QtGui import QImage
 
 from sfumato import Scene
 from sfumato_ui.window import MainWindow
+from sfumato_ui.worker import STILL_FRAMES
 
 SIZE = (48, 36)
 
@@ -62,6 +63,16 @@ def test_the_picture_is_finished_first(window: MainWindow, album: Album, hand: A
     hand.drag(window.viewport, middle, middle + QPoint(60, 20), steps=20)
     qtbot.waitUntil(lambda: bool(settled), timeout=90_000)
     assert settled == [True]
+
+
+def test_a_long_refinement_lets_them_in_between(window: MainWindow, album: Album, qtbot: QtBot) -> None:
+    window.driver.set_frames(STILL_FRAMES + 6)
+    window.thumbnails.want("test", tilted(window.editor.scene, 10.0), SIZE)
+    frames: list[int] = []
+    window.worker.thumbnail.connect(lambda *_: frames.append(window.viewport.picture.frames))
+    qtbot.waitUntil(lambda: bool(frames), timeout=90_000)
+    assert STILL_FRAMES <= frames[0] < STILL_FRAMES + 6
+    qtbot.waitUntil(lambda: window.viewport.picture.frames == STILL_FRAMES + 6, timeout=90_000)
 
 
 def test_a_new_wish_replaces_the_old_one(window: MainWindow, album: Album, qtbot: QtBot) -> None:

@@ -73,8 +73,8 @@ class LightDial(QWidget):
         return QSize(180, 180)
 
     def minimumSizeHint(self) -> QSize:
-        """Stay large enough to aim at."""
-        return self.sizeHint()
+        """Stay large enough to aim at, beside wide neighbours too."""
+        return QSize(140, 140)
 
     def refresh(self) -> None:
         """Show the scene's lamps."""

@@ -15,7 +15,8 @@ from .theme import TARGET, Theme, current_theme
 LONGEST_NAME = 24
 _DOT = 5.0
 _PAD = 7
-_LEAST_WIDTH = 46
+#: Width in pixels to which a long name is shortened, so that four lamps fit beside each other.
+_LEAST_WIDTH = 56
 
 
 class LampChip(QToolButton):
@@ -63,11 +64,12 @@ class LampChip(QToolButton):
         """Be as wide as dot and name."""
         metrics = self.fontMetrics()
         width = metrics.horizontalAdvance(self.text()) + round(2 * _DOT) + 2 * _PAD + 8
-        return QSize(max(_LEAST_WIDTH, width), max(TARGET + 2, metrics.height() + 10))
+        return QSize(max(TARGET, width), max(TARGET + 2, metrics.height() + 10))
 
     def minimumSizeHint(self) -> QSize:
         """Shrink, with the name shortened, where there is no room."""
-        return QSize(_LEAST_WIDTH, self.sizeHint().height())
+        hint = self.sizeHint()
+        return QSize(min(_LEAST_WIDTH, hint.width()), hint.height())
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the button, the lamp's dot and its name, as much of it as there is room for."""

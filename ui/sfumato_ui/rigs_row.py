@@ -7,6 +7,8 @@ from collections.abc import Hashable
 from qtpy.QtCore import QRectF, QSize, Qt, QTimer, Signal
 from qtpy.QtGui import (
     QColor,
+    QFont,
+    QFontMetrics,
     QHideEvent,
     QImage,
     QKeyEvent,
@@ -66,13 +68,18 @@ class RigButton(QAbstractButton):
 
     def sizeHint(self) -> QSize:
         """Hold picture, frame and name."""
-        name = self.fontMetrics()
-        width = max(PICTURE[0], name.horizontalAdvance(self.text())) + 6
+        name = QFontMetrics(self._marked_font())
+        width = max(PICTURE[0] + 4, name.horizontalAdvance(self.text()) + 2)
         return QSize(width, PICTURE[1] + name.height() + 8)
 
     def minimumSizeHint(self) -> QSize:
-        """Do not shrink."""
-        return self.sizeHint()
+        """Shrink to the picture; the name is shortened then."""
+        return QSize(PICTURE[0] + 4, self.sizeHint().height())
+
+    def _marked_font(self) -> QFont:
+        font = QFont(self.font())
+        font.setBold(True)
+        return font
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Arrow keys go from rig to rig, Enter applies as Space does."""
@@ -107,11 +114,11 @@ class RigButton(QAbstractButton):
         painter.restore()
         self._draw_frame(painter, frame)
         painter.setPen(QColor(theme.text if self.isEnabled() else theme.border))
-        font = painter.font()
-        font.setBold(self.isChecked())
-        painter.setFont(font)
+        if self.isChecked():
+            painter.setFont(self._marked_font())
         below = QRectF(0, frame.bottom() + 3, self.width(), self.height() - frame.bottom() - 3)
-        painter.drawText(below, Qt.AlignmentFlag.AlignCenter, self.text())
+        name = painter.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, self.width())
+        painter.drawText(below, Qt.AlignmentFlag.AlignCenter, name)
 
     def _draw_frame(self, painter: QPainter, frame: QRectF) -> None:
         """Draw an accent frame for the current rig, and the focus ring around it."""
