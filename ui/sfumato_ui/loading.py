@@ -14,6 +14,7 @@ from qtpy.QtCore import QObject, Signal
 import sfumato_samples
 from sfumato import Scene, Volume
 from sfumato.export.png import carries_scene, open_png
+from sfumato.scene.presets import presets_for
 
 from .worker import one_line
 
@@ -175,9 +176,9 @@ def _read_volume(wish: Wish, progress: Any, cancel: Any) -> Volume:
 
 
 def _prepare(scene: Scene) -> None:
-    """Compute here, off the window's thread, what is slow to compute once: content hash and histogram."""
+    """Compute here, off the window's thread, what is slow to compute once: content hash, histogram, presets."""
     if scene.volume is not None:
-        _ = scene.volume.key, scene.volume.histogram
+        _ = scene.volume.key, scene.volume.histogram, presets_for(scene.volume)
 
 
 def _several_series(path: str) -> list[Any]:
