@@ -77,7 +77,9 @@ class Frame:
         if self.size == self.whole_size:
             return self.camera
         (x, y), (width, height), whole = self.corner, self.size, self.whole_size
-        return self.camera.cropped(x / whole[0], y / whole[1], (x + width) / whole[0], (y + height) / whole[1])
+        return self.camera.cropped(
+            x / whole[0], y / whole[1], (x + width) / whole[0], (y + height) / whole[1]
+        )
 
     @property
     def transfer(self) -> TransferFunction:
