@@ -199,7 +199,7 @@ def test_add_select_flip_switch_and_remove(
     assert editor.scene.clip[0].point == pytest.approx(editor.scene.volume.center)
     qtbot.mouseClick(rows.add, LEFT)
     qtbot.mouseClick(rows.flip, LEFT)
-    assert editor.scene.clip[1].normal == (-0.0, -1.0, -0.0)
+    assert editor.scene.clip[1].normal == (-1.0, 0.0, 0.0), "the second cuts across another axis"
     qtbot.mouseClick(rows.chips[0], LEFT)
     assert window.viewport.clips.selected == 0
     qtbot.mouseClick(rows.switch, LEFT)

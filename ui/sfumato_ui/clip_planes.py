@@ -15,6 +15,8 @@ from sfumato.scene import MAX_CLIP_PLANES, ClipPlane, CropBox
 
 from .editing import Editor
 
+#: Cosine of the angle below which two planes do not cut alike.
+ALIKE = 0.95
 #: Thinnest slab that the crop box leaves, as a fraction of the volume.
 THINNEST = 0.01
 _ANATOMY = ("Right – left", "Front – back", "Bottom – top")
@@ -114,14 +116,19 @@ class ClipPlanes(QObject):
 
     # -- planes -----------------------------------------------------------------------------------
     def add(self) -> None:
-        """Add a plane through the middle of what the crop box leaves, along the axis that faces the eye."""
+        """Add a plane through the middle of what the crop box leaves.
+
+        It cuts across the axis that faces the eye, or the next one across which no plane cuts yet.
+        """
         scene = self._editor.scene
         if scene.volume is None or scene.camera is None or len(self.planes) >= MAX_CLIP_PLANES:
             return
         forward = np.asarray(scene.camera.basis().forward)
-        facing = int(np.argmax([abs(forward @ axis) for axis in cut_normals(scene)[:3]]))
+        axes = sorted(cut_normals(scene)[:3], key=lambda axis: -abs(float(forward @ axis)))
+        used = [unit(plane.normal) for plane in self.planes]
+        free = (axis for axis in axes if all(abs(float(axis @ other)) < ALIKE for other in used))
         middle = scene.volume.corners(scene.crop.low, scene.crop.high).mean(axis=0)
-        plane = ClipPlane(vec(middle), self._away_from_eye(cut_normals(scene)[facing]))
+        plane = ClipPlane(vec(middle), self._away_from_eye(next(free, axes[0])))
         if self._editor.change("Add a clip plane", clip=(*self.planes, plane)):
             self.select(len(self.planes) - 1)
             self.added.emit()
