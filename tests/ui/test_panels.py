@@ -20,7 +20,12 @@ def walked(request: pytest.FixtureRequest, make_window: object, ball_scene: Scen
     """A window in each theme, with all sections open."""
     window: MainWindow = make_window(ball_scene.with_(clip=(ClipPlane((20, 20, 20)),)), size=(1280, 720))  # type: ignore[operator]
     window.set_theme(request.param)
-    for section in (window.light_page.own, window.light_page.more, window.view_page.more):
+    for section in (
+        window.light_page.own,
+        window.light_page.more,
+        window.material_page.more,
+        window.view_page.more,
+    ):
         section.set_open(True)
     return window
 
