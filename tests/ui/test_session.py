@@ -7,7 +7,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QApplication, QFileDialog, QPushButton
+from qtpy.QtWidgets import QApplication, QFileDialog, QPushButton, QWidget
 
 from sfumato import Scene
 from sfumato_ui import autosave
@@ -65,22 +65,22 @@ def quick_autosave(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(autosave, "AUTOSAVE_MS", 50)
 
 
-Start = Any
+Start = Callable[..., list[subprocess.Popen[str]]]
 
 
 @pytest.fixture
-def start_victim(volume_file: Path) -> Iterator[Start]:
-    """Return a starter of programs with unsaved work."""
+def start_victims(volume_file: Path) -> Iterator[Start]:
+    """Return a starter of programs with unsaved work, one for each tilt."""
     started: list[subprocess.Popen[str]] = []
 
-    def start(tilt: float) -> subprocess.Popen[str]:
-        program = subprocess.Popen(
-            [sys.executable, "-c", VICTIM, str(volume_file), str(tilt)], stdout=subprocess.PIPE, text=True
-        )
-        started.append(program)
-        assert program.stdout is not None
-        assert program.stdout.readline() == "written\n"
-        return program
+    def start(*tilts: float) -> list[subprocess.Popen[str]]:
+        for tilt in tilts:
+            command = [sys.executable, "-c", VICTIM, str(volume_file), str(tilt)]
+            started.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
+        for program in started:
+            assert program.stdout is not None
+            assert program.stdout.readline() == "written\n"
+        return started
 
     yield start
     for program in started:
@@ -90,10 +90,11 @@ def start_victim(volume_file: Path) -> Iterator[Start]:
         program.stdout.close()
 
 
-def kill(program: subprocess.Popen[str]) -> None:
-    """End a program as a crash does."""
-    os.kill(program.pid, signal.SIGKILL)
-    program.wait()
+def kill(*programs: subprocess.Popen[str]) -> None:
+    """End programs as a crash does."""
+    for program in programs:
+        os.kill(program.pid, signal.SIGKILL)
+        program.wait()
 
 
 def click(window: MainWindow, qtbot: QtBot, text: str) -> None:
@@ -115,8 +116,8 @@ def autosaved() -> list[Path]:
 
 # -- after a crash ---------------------------------------------------------------------------------
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs a signal that cannot be caught")
-def test_work_is_recovered_after_a_crash(make_window: Any, start_victim: Start, qtbot: QtBot) -> None:
-    kill(start_victim(51.0))
+def test_work_is_recovered_after_a_crash(make_window: Any, start_victims: Start, qtbot: QtBot) -> None:
+    kill(*start_victims(51.0))
     window = make_window()
     qtbot.waitUntil(lambda: window.messages.kind == "question")
     assert window.messages.text.startswith("Unsaved work on “ball.npy” from ")
@@ -133,11 +134,9 @@ def test_work_is_recovered_after_a_crash(make_window: Any, start_victim: Start, 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs a signal that cannot be caught")
 def test_several_crashes_are_offered_one_by_one_and_discarding_removes(
-    make_window: Any, start_victim: Start, qtbot: QtBot
+    make_window: Any, start_victims: Start, qtbot: QtBot
 ) -> None:
-    first = start_victim(41.0)
-    kill(start_victim(42.0))
-    kill(first)
+    kill(*start_victims(41.0, 42.0))
     window = make_window()
     qtbot.waitUntil(lambda: window.messages.kind == "question")
     click(window, qtbot, "Discard")
@@ -150,9 +149,9 @@ def test_several_crashes_are_offered_one_by_one_and_discarding_removes(
 
 
 def test_a_window_leaves_the_work_of_a_living_one_alone(
-    make_window: Any, start_victim: Start, qtbot: QtBot
+    make_window: Any, start_victims: Start, qtbot: QtBot
 ) -> None:
-    start_victim(43.0)
+    start_victims(43.0)
     window = make_window()
     qtbot.wait(100)
     assert not window.messages.isVisible()
@@ -168,7 +167,15 @@ def test_a_question_gives_way_and_comes_back(make_window: Any, qtbot: QtBot) -> 
     assert window.messages.text == "Opening…"
     window.messages.clear("progress")
     assert window.messages.text == "Recover?"
-    click(window, qtbot, "Recover")
+    qtbot.waitUntil(window.isActiveWindow)
+    window.viewport.setFocus()
+    qtbot.waitUntil(window.viewport.hasFocus)
+    for _ in range(80):
+        focus = QApplication.focusWidget()
+        if isinstance(focus, QPushButton) and focus.text() == "Recover":
+            break
+        qtbot.keyClick(focus, Qt.Key.Key_Tab)
+    qtbot.keyClick(QApplication.focusWidget(), Qt.Key.Key_Space)
     assert answers == ["yes"]
     assert not window.messages.isVisible()
 
@@ -293,3 +300,16 @@ def test_tab_sections_and_size_persist(make_window: Any, qtbot: QtBot, ball_scen
     second.worker.ask_to_stop()
     second.close()
     second.deleteLater()
+
+
+def test_tab_goes_round_the_whole_window(make_window: Any, qtbot: QtBot) -> None:
+    window = make_window()
+    qtbot.waitUntil(window.isActiveWindow)
+    window.viewport.setFocus()
+    qtbot.waitUntil(window.viewport.hasFocus)
+    seen: list[QWidget] = []
+    while (focus := QApplication.focusWidget()) not in seen:
+        seen.append(focus)
+        qtbot.keyClick(focus, Qt.Key.Key_Tab)
+    assert focus is window.viewport, "back where it began"
+    assert {window.top.open, window.strip.fit, window.panel.tabBar()} <= set(seen)

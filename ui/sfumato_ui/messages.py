@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 
 from qtpy.QtCore import Qt, QTimer, Signal
 from qtpy.QtGui import QColor, QPalette
@@ -158,6 +159,9 @@ class MessageBar(QFrame):
             button.clicked.connect(lambda _=False, act=act: self._answer(act))
             self._row.insertWidget(self._row.count() - 1, button, 0, Qt.AlignmentFlag.AlignVCenter)
             self._answers.append(button)
+        # Tab goes from the picture to the answers.
+        for before, after in pairwise([self._over, *self._answers, self._close]):
+            QWidget.setTabOrder(before, after)
 
     def _answer(self, act: Callable[[], object]) -> None:
         self.clear(self.kind)

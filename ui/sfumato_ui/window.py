@@ -100,6 +100,9 @@ class MainWindow(QMainWindow):
         self.panel.setFixedWidth(PANEL_WIDTH)
         self.panel.tabBar().setDrawBase(False)
         self.panel.tabBar().setAccessibleName("Panels")
+        # Its bar alone takes the focus: the tab widget hands it on, and Tab would never get past it.
+        self.panel.setFocusProxy(None)  # type: ignore[arg-type]
+        self.panel.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         for page, name in (
             (self.light_page, "Light"),
             (self.material_page, "Material"),

@@ -362,11 +362,16 @@ class _ViewsFirst:
 @contextmanager
 def _accumulation(renderer: Any, scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Any]:
     accumulation = renderer.begin(scene, size, quality=quality)
+    lost = False
     try:
         yield accumulation
+    except GpuError as error:
+        lost = error.remedy == "new renderer"
+        raise
     finally:
-        accumulation.release()
-        renderer.device.collect()
+        if not lost:  # in a context that is lost there is nothing to free, and no way to
+            accumulation.release()
+            renderer.device.collect()
 
 
 def _picture(accumulation: Any, request: ViewRequest, seconds: float) -> Picture:
