@@ -127,7 +127,7 @@ class RigButton(QAbstractButton):
         if self.isChecked():
             painter.setPen(QPen(QColor(theme.accent), 3))
             painter.drawRoundedRect(frame.adjusted(0.5, 0.5, -0.5, -0.5), 4, 4)
-        elif self.underMouse():
+        elif self.underMouse() and self.isEnabled():
             painter.setPen(QPen(QColor(theme.border), 2))
             painter.drawRoundedRect(frame, 4, 4)
         if self.hasFocus():
@@ -188,7 +188,7 @@ class RigsRow(QWidget):
     # -- pictures ---------------------------------------------------------------------------------
     def _want_pictures(self) -> None:
         scene = self._editor.scene
-        if scene.volume is None or not self.isVisible():
+        if scene.volume is None or not (self.isVisible() and self.isEnabled()):
             return
         ratio = self.devicePixelRatioF()
         size = round(PICTURE[0] * ratio), round(PICTURE[1] * ratio)

@@ -189,7 +189,7 @@ class LightPage(Page):
         if not technique.lit:
             text = "This technique draws without light."
         elif shining > technique.max_lights:
-            text = f"This technique uses {technique.max_lights} of {shining} lamps: the first in the list."
+            text = f"This technique uses {technique.max_lights} of {shining} lamps: the first that shines."
         self.note.setText(text)
         self.note.setVisible(bool(text))
         self.rigs.set_reason("" if technique.lit else text)
