@@ -90,7 +90,7 @@ def test_renaming_by_double_click_and_f2(lit: MainWindow, qtbot: QtBot) -> None:
     assert lit.editor.scene.lights[1].name == "fill", "nothing happens while it is typed"
     qtbot.keyClick(row.name_line, Qt.Key.Key_Return)
     assert names(lit) == ["key", "Bulb L1", "rim"]
-    assert row.chips[1].text() == "Bulb L1"
+    assert row.chips[1].label == "Bulb L1"
     assert lit.viewport.tool == "orbit", "L and 1 are letters here"
     lit.editor.undo()
     assert names(lit) == ["key", "fill", "rim"]

@@ -55,7 +55,7 @@ def test_a_click_lights_the_scene_in_one_step(window: MainWindow, hand: Any, qtb
     assert editor.scene.lights == rigs()["rim"].lights
     assert editor.selected == 0
     assert marked(row) == ["rim"]
-    assert [chip.text() for chip in window.light_page.lamps.chips] == ["left rim", "right rim", "fill"]
+    assert [chip.label for chip in window.light_page.lamps.chips] == ["left rim", "right rim", "fill"]
     hand.wait_for_picture()
     assert np.abs(hand.pixels() - before).mean() > 1
     editor.undo()

@@ -33,6 +33,8 @@ class LampChip(QToolButton):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._light = Light()
+        #: The lamp's name; not the button's text, which the style would draw without regard for the room.
+        self.label = ""
         self._dark = False
         self._pressed_at: QPointF | None = None
         self._dragging = False
@@ -42,7 +44,7 @@ class LampChip(QToolButton):
     def show_light(self, light: Light, label: str, shines: bool, selected: bool) -> None:
         """Show a lamp under a label; `shines` is whether any of its light reaches the picture."""
         self._light, self._dark = light, not shines
-        self.setText(label)
+        self.label = label
         self.setChecked(selected)
         state = "muted" if not light.enabled else "solo" if light.solo else "" if shines else "dark"
         self.setAccessibleName(f"Lamp {label}")
@@ -63,7 +65,7 @@ class LampChip(QToolButton):
     def sizeHint(self) -> QSize:
         """Be as wide as dot and name."""
         metrics = self.fontMetrics()
-        width = metrics.horizontalAdvance(self.text()) + round(2 * _DOT) + 2 * _PAD + 8
+        width = metrics.horizontalAdvance(self.label) + round(2 * _DOT) + 2 * _PAD + 8
         return QSize(max(TARGET, width), max(TARGET + 2, metrics.height() + 10))
 
     def minimumSizeHint(self) -> QSize:
@@ -78,7 +80,6 @@ class LampChip(QToolButton):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         option = QStyleOptionToolButton()
         self.initStyleOption(option)
-        option.text = ""
         self.style().drawComplexControl(QStyle.ComplexControl.CC_ToolButton, option, painter, self)
         ink = QColor(theme.on_accent if self.isChecked() else theme.muted if self._dark else theme.text)
         self._draw_dot(painter, ink, theme)
@@ -87,7 +88,7 @@ class LampChip(QToolButton):
         painter.setFont(font)
         painter.setPen(ink)
         room = QRect(self.rect()).adjusted(_PAD + round(2 * _DOT) + 6, 0, -_PAD + 3, 0)
-        words = self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room.width())
+        words = self.fontMetrics().elidedText(self.label, Qt.TextElideMode.ElideRight, room.width())
         painter.drawText(room, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, words)
 
     def _draw_dot(self, painter: QPainter, ink: QColor, theme: Theme) -> None:
