@@ -27,6 +27,9 @@ class Album:
         window.thumbnails.ready.connect(self._keep)
 
     def _keep(self, group: str, key: Any, image: QImage) -> None:
+        # The panels want theirs, too.
+        if group not in ("test", "other"):
+            return
         self.pictures[group, key] = image
         self.told.append((group, key))
 
@@ -62,7 +65,7 @@ def test_the_picture_is_finished_first(window: MainWindow, album: Album, hand: A
     middle = window.viewport.rect().center()
     hand.drag(window.viewport, middle, middle + QPoint(60, 20), steps=20)
     qtbot.waitUntil(lambda: bool(settled), timeout=90_000)
-    assert settled == [True]
+    assert all(settled)
 
 
 def test_a_long_refinement_lets_them_in_between(window: MainWindow, album: Album, qtbot: QtBot) -> None:
