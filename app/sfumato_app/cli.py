@@ -120,6 +120,7 @@ def list_techniques(
 PROGRAMS = (
     ("bench", "bench", "Measure the techniques on this machine."),
     ("contact-sheet", "contact_sheet", "Draw every volume in a folder of data sets to one labelled sheet."),
+    ("first-minute", "first_minute", "Measure when a volume dropped on the window is seen."),
     ("gallery", "gallery", "Draw the gallery: the figures of Soltesova2010 with our samples."),
     ("quality", "quality", "Measure how near shadows are to the ray-traced cone."),
 )
