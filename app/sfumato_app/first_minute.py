@@ -76,8 +76,9 @@ class Minute:
         """``yes`` if all goals were met, else which were not."""
         if not self.opened:
             return "not opened" if self.message else "given up"
-        times = zip((self.progress, self.first, self.settled), GOALS, ("progress", "first", "settled"))
-        return ", ".join(name for taken, goal, name in times if not taken <= goal) or "yes"
+        times = {"progress": self.progress, "first": self.first, "settled": self.settled}
+        late = [name for (name, taken), goal in zip(times.items(), GOALS, strict=True) if not taken <= goal]
+        return ", ".join(late) or "yes"
 
 
 class _Clock(QObject):
@@ -228,7 +229,8 @@ HEAD = (
 def row(minute: Minute) -> str:
     """Return the table's row, in Markdown."""
     if not minute.opened:
-        return f"| {minute.name} | | {minute.progress:.2f} | | | | {minute.load:.1f} | {minute.message or minute.verdict} |"
+        said = minute.message or minute.verdict
+        return f"| {minute.name} | | {minute.progress:.2f} | | | | {minute.load:.1f} | {said} |"
     times = (minute.progress, minute.loaded, minute.first, minute.settled)
     voxels = " × ".join(map(str, minute.dims))
     figures = " | ".join(f"{t:.2f}" for t in times)
@@ -244,7 +246,10 @@ def _machine() -> str:
     finally:
         renderer.close()
     load = " ".join(map(str, told["load_average"] or []))
-    return f"{told['cpu']}, {told['cores']} cores, load average {load}; {told['gl_renderer']}; window {SIZE[0]} × {SIZE[1]}"
+    return (
+        f"{told['cpu']}, {told['cores']} cores, load average {load}; {told['gl_renderer']}; "
+        f"window {SIZE[0]} × {SIZE[1]}"
+    )
 
 
 def find_drops(folder: Path) -> list[Path]:

@@ -10,6 +10,7 @@ import pytest
 
 import sfumato
 from sfumato import SceneError, Volume, VolumeInfo
+from sfumato.scene import STANDARD_VIEWS
 from sfumato.scene.presets import (
     preset,
     presets_for,
@@ -219,3 +220,20 @@ def test_thin_parts_of_the_subject_are_no_table() -> None:
         hand[40:75, 28:32, x : x + 4] = 40
     volume = Volume(hand, (2.0, 2.0, 2.0), info=VolumeInfo(modality="CT", orientation_known=True))
     assert suggest_clip(volume) == ()
+
+
+@pytest.mark.parametrize("aspect", [0.5, 1.0, 2.0])
+def test_a_view_fits_the_aspect_of_its_picture(aspect: float) -> None:
+    data = np.where(ellipsoid((60, 60, 80), (30, 30, 40), (12, 12, 34)) < 1, 200, 0).astype(np.uint8)
+    volume = Volume(data)
+    camera = suggest_view(volume, suggest_transfer(volume), STANDARD_VIEWS["front"], aspect=aspect)
+    inside = np.argwhere(data)[:, ::-1] + 0.5
+    basis = camera.basis()
+    rel = volume.origin + inside * volume.spacing - np.asarray(camera.position)
+    depth = rel @ basis.forward
+    half = camera.half_extent(aspect)
+    spans = [
+        np.abs(rel @ axis / depth).max() / extent
+        for axis, extent in zip((basis.right, basis.up), half, strict=True)
+    ]
+    assert 0.7 < max(spans) < 0.9

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sfumato import Camera
+from sfumato import Camera, Scene, Volume, VolumeInfo
 from sfumato.scene import STANDARD_VIEWS
 from sfumato_ui import camera_moves
 
@@ -89,3 +89,25 @@ def test_views_and_letters(view: str) -> None:
         "bottom": "LRAP",
     }[view]
     assert "".join(letters[edge] for edge in ("right", "left", "top", "bottom")) == expected
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize("view", ["", *STANDARD_VIEWS])
+def test_the_whole_is_seen_from_every_side_in_every_picture(view: str, parallel: bool) -> None:
+    data = np.zeros((20, 30, 60), np.uint8)
+    data[2:-2, 2:-2, 2:-2] = 200
+    volume = Volume(data, info=VolumeInfo(orientation_known=True))
+    tilted = camera_moves.orbit(camera_moves.with_lens(START, 60), 33, 21)
+    scene = Scene(volume=volume, camera=camera_moves.with_projection(tilted, parallel))
+    for aspect in (0.5, 1.0, 2.0):
+        camera = camera_moves.whole_view(scene, aspect, view)
+        assert camera is not None
+        assert camera.parallel_projection is parallel
+        basis, half = camera.basis(), camera.half_extent(aspect)
+        corners = volume.corners() * 0.8 + np.mean(volume.corners(), axis=0) * 0.2
+        seen = corners - camera.position
+        depth = 1.0 if parallel else seen @ basis.forward
+        spans = [
+            np.abs(seen @ a / depth).max() / h for a, h in zip((basis.right, basis.up), half, strict=True)
+        ]
+        assert 0.6 < max(spans) < 0.95

@@ -11,8 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from sfumato import Camera
+from sfumato import Camera, Scene
 from sfumato.scene import STANDARD_VIEWS
+from sfumato.scene.presets import suggest_view
 
 #: Closest approach to the poles in degrees.
 POLE_MARGIN = 1.0
@@ -138,6 +139,29 @@ def from_side(camera: Camera, view: str) -> Camera:
     return replace(camera, position=_vec(np.asarray(camera.focal_point) + arm), view_up=up)
 
 
+def whole_view(scene: Scene, aspect: float, view: str = "") -> Camera | None:
+    """Return the camera that sees the whole subject, with the lens and projection of the scene's own.
+
+    Parameters
+    ----------
+    aspect : float
+        The picture's width over its height.
+    view : str
+        Name of a standard view; the camera's own direction if empty.
+    """
+    camera = scene.camera
+    if scene.volume is None or camera is None:
+        return None
+    looking = from_side(camera, view) if view else camera
+    basis = looking.basis()
+    whole = suggest_view(
+        scene.volume, scene.transfer, (basis.back, basis.up), aspect=aspect,
+        view_angle=camera.view_angle, parallel_projection=camera.parallel_projection,
+    )  # fmt: skip
+    # The turntable's axis stays what it was: a tilted camera's own up is only what is up in the picture.
+    return replace(whole, view_up=looking.view_up)
+
+
 def edge_letters(camera: Camera) -> dict[str, str]:
     """Return the patient's direction (R, L, A, P, S, I) at the picture's right, left, top and bottom edge."""
     basis = camera.basis()
@@ -151,26 +175,3 @@ def _letter(axis: tuple[float, ...]) -> str:
     """Name the nearest axis of the patient (LPS)."""
     i = int(np.argmax(np.abs(axis)))
     return ("RL", "AP", "IS")[i][int(axis[i] > 0)]
-
-
-def fitted(camera: Camera, whole: Camera, view: str = "") -> Camera:
-    """Return the camera moved so that it sees the whole subject, with its own lens and projection.
-
-    Parameters
-    ----------
-    whole : Camera
-        Any perspective camera that sees the whole subject.
-    view : str
-        Name of a standard view; the camera's own direction if empty.
-    """
-    half = picture_half_height(whole)
-    arm = np.subtract(camera.position, camera.focal_point)
-    placed = replace(
-        camera,
-        focal_point=whole.focal_point,
-        position=_vec(np.asarray(whole.focal_point) + arm),
-        parallel_scale=half,
-        window_center=(0.0, 0.0),
-    )
-    placed = _at_distance(placed, half / math.tan(math.radians(camera.view_angle) / 2))
-    return from_side(placed, view) if view else placed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -30,9 +31,11 @@ class Files(QObject):
     #: The scene was saved.
     scene_saved = Signal()
 
-    def __init__(self, window: QWidget, editor: Editor, bar: MessageBar) -> None:
+    def __init__(
+        self, window: QWidget, editor: Editor, bar: MessageBar, aspect: Callable[[], float] = lambda: 1.0
+    ) -> None:
         super().__init__(window)
-        self._window, self._editor, self._bar = window, editor, bar
+        self._window, self._editor, self._bar, self._aspect = window, editor, bar, aspect
         self.loader = Loader()
         self.scene_path = ""
         self._wish = Wish("")
@@ -81,7 +84,9 @@ class Files(QObject):
     def _begin(self, wish: Wish) -> None:
         self._wish = wish
         self._bar.show_progress(f"Opening {wish.name}… ", 0.0)
-        self.loader.open(wish)
+        # At once: a reader's first import may hold the interpreter for half a second.
+        self._bar.repaint()
+        self.loader.open(wish, self._aspect())
 
     def _on_loaded(self, scene: Scene, wish: Wish) -> None:
         self.scene_path = wish.slot.about().scene_path if wish.slot else wish.scene_path

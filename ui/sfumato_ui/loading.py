@@ -14,7 +14,7 @@ from qtpy.QtCore import QObject, Signal
 import sfumato_samples
 from sfumato import Scene, Volume
 from sfumato.export.png import carries_scene, open_png
-from sfumato.scene.presets import presets_for
+from sfumato.scene.presets import presets_for, suggest_view
 
 from .worker import one_line
 
@@ -86,9 +86,9 @@ class Loader(QObject):
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
 
-    def open(self, wish: Wish) -> None:
-        """Begin to open a volume, a folder, a scene file or a sample."""
-        self._start(lambda progress, stop: self._open(wish, progress, stop))
+    def open(self, wish: Wish, aspect: float = 1.0) -> None:
+        """Begin to open a volume, a folder, a scene file or a sample, for a picture of an aspect."""
+        self._start(lambda progress, stop: self._open(wish, aspect, progress, stop))
 
     def reduce(self, scene: Scene) -> None:
         """Begin to halve the resolution of a scene's volume."""
@@ -127,14 +127,14 @@ class Loader(QObject):
         elif stop is self._stop:  # given up by the user, not for something else
             self.cancelled.emit()
 
-    def _open(self, wish: Wish, progress: Any, stop: threading.Event) -> Callable[[], object]:
+    def _open(self, wish: Wish, aspect: float, progress: Any, stop: threading.Event) -> Callable[[], object]:
         from sfumato.io import NeedsDescription, guess_raw
 
         found = _several_series(wish.path) if wish.series is None else []
         if len(found) > 1:
             return partial(self.several.emit, wish.path, found)
         try:
-            scene = read_scene(wish, progress, stop.is_set)
+            scene = read_scene(wish, progress, stop.is_set, aspect)
         except NeedsDescription as error:
             return partial(self.raw_found.emit, error.path, guess_raw(error.path))
         return partial(self.loaded.emit, scene, wish)
@@ -148,8 +148,8 @@ class Loader(QObject):
         return partial(self.reduced.emit, smaller)
 
 
-def read_scene(wish: Wish, progress: Any = None, cancel: Any = None) -> Scene:
-    """Read a scene file, a picture that carries its scene, or a volume as a new, fitting scene."""
+def read_scene(wish: Wish, progress: Any = None, cancel: Any = None, aspect: float = 1.0) -> Scene:
+    """Read a scene file, a picture that carries its scene, or a volume as a new scene that fits the picture."""
     if wish.scene_path:
         scene = Scene.open(wish.path)
     elif wish.is_sample:
@@ -157,9 +157,15 @@ def read_scene(wish: Wish, progress: Any = None, cancel: Any = None) -> Scene:
     elif carries_scene(wish.path):
         scene = open_png(wish.path)
     else:
-        scene = Scene(volume=_read_volume(wish, progress, cancel))
+        scene = _fitting(_read_volume(wish, progress, cancel), aspect)
     _prepare(scene)
     return scene
+
+
+def _fitting(volume: Volume, aspect: float) -> Scene:
+    """Return a new scene whose camera sees the whole subject in a picture of an aspect."""
+    scene = Scene(volume=volume)
+    return scene.with_(camera=suggest_view(volume, scene.transfer, aspect=aspect))
 
 
 def _read_volume(wish: Wish, progress: Any, cancel: Any) -> Volume:

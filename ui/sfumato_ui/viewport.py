@@ -128,6 +128,11 @@ class Viewport(QWidget):
         return max(1, round(self.width() * ratio)), max(1, round(self.height() * ratio))
 
     @property
+    def aspect(self) -> float:
+        """Width over height."""
+        return self.width() / max(1, self.height())
+
+    @property
     def picture(self) -> Picture | None:
         """The picture that is shown."""
         return self._picture
@@ -252,9 +257,7 @@ class Viewport(QWidget):
         if not plain or view is None or on_handle:
             self.mousePressEvent(event)
             return
-        point = surface_under(
-            self._editor.scene, *view.fractions((at.x(), at.y())), self.width() / self.height()
-        )
+        point = surface_under(self._editor.scene, *view.fractions((at.x(), at.y())), self.aspect)
         if point is not None:
             self._editor.change("Centre the picture", camera=camera_moves.centred(view.camera, point))
 

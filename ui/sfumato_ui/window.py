@@ -23,7 +23,6 @@ from qtpy.QtWidgets import QApplication, QGridLayout, QMainWindow, QTabWidget, Q
 
 from sfumato import Document, Scene
 from sfumato.scene import STANDARD_VIEWS
-from sfumato.scene.presets import suggest_view
 
 from . import camera_moves
 from .autosave import Autosave
@@ -71,7 +70,7 @@ class MainWindow(QMainWindow):
         self.worker = RenderWorker()
         self.thumbnails = Thumbnails(self.worker, self)
         self.driver = ViewDriver(self.editor, self.viewport, self.worker)
-        self.files = Files(self, self.editor, self.messages)
+        self.files = Files(self, self.editor, self.messages, lambda: self.viewport.aspect)
         self.exporter = Exporter(
             self, self.editor, self.viewport, self.worker, self.messages, lambda: self.files.name
         )
@@ -226,12 +225,9 @@ class MainWindow(QMainWindow):
 
     def look(self, view: str) -> None:
         """See the whole subject from a standard view, or from where the camera stands if none is named."""
-        scene = self.editor.scene
-        if scene.volume is None or scene.camera is None:
-            return
-        whole = suggest_view(scene.volume, scene.transfer)
-        camera = camera_moves.fitted(scene.camera, whole, view)
-        self.editor.change(f"View from the {view}" if view else "See the whole", camera=camera)
+        camera = camera_moves.whole_view(self.editor.scene, self.viewport.aspect, view)
+        if camera is not None:
+            self.editor.change(f"View from the {view}" if view else "See the whole", camera=camera)
 
     def _choose_tool(self, name: str) -> None:
         self.viewport.tool = name

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..camera import STANDARD_VIEWS, Camera
@@ -12,32 +14,46 @@ from .values import THIN
 from .visible import outline, seen_cells
 
 Vec3 = tuple[float, float, float]
+Side = tuple[Vec3, Vec3]
 
 #: A picture of which more than this share is one plane facing the viewer is of a cut, not of the subject.
 FLAT = 0.7
 
 
-def suggest_view(volume: Volume, transfer: TransferFunction | None) -> Camera:
+def suggest_view(
+    volume: Volume, transfer: TransferFunction | None, side: Side | None = None, **options: Any
+) -> Camera:
     """Return a view of what a transfer function shows of a volume.
 
     Where the orientation is known that is the front view; else the same along the array's axes. What is
     much thinner along one axis than along the others is seen along that axis: a few axial slices from
     the feet, as radiologists do.
+
+    Parameters
+    ----------
+    side : (side, up), optional
+        Where to stand and what is up instead, as in `STANDARD_VIEWS`.
+    **options
+        As in `Camera.fit`: the picture's aspect, the lens.
     """
     cells = seen_cells(volume, transfer) if transfer is not None else None
     if cells is None or not cells.any():
-        return Camera.standard(volume)
+        return Camera.fit(volume.corners(), side or "front", **options)
     points = outline(volume, cells)
     for plane in suggest_clip(volume):
         ahead = points @ plane.normal >= np.dot(plane.point, plane.normal)
         points = points[ahead] if ahead.any() else points
+    return Camera.fit(points, side or _best_side(volume, cells, points), **options)
+
+
+def _best_side(volume: Volume, cells: np.ndarray, points: np.ndarray) -> Side:
     known = volume.info.orientation_known
     axes = np.eye(3) if known else np.asarray(volume.direction)
     name = _thin_view(np.ptp(points @ axes, axis=0))
     if name is None:
         name = "front" if known else ("back" if face_side(volume) > 0 else _least_flat(cells))
     side, up = (_along(axes, v) for v in STANDARD_VIEWS[name])
-    return Camera.fit(points, (side, up))
+    return side, up
 
 
 def _thin_view(extent: np.ndarray) -> str | None:
