@@ -25,6 +25,8 @@ from sfumato.techniques.frame import FULL, Quality
 
 #: Jittered frames that a still picture accumulates.
 STILL_FRAMES = 8
+#: Seconds after which a still picture of so many frames is good enough with fewer, but two at least.
+STILL_SECONDS = 20.0
 #: Qualities while the user drags, finest first; the worker keeps to the finest that is quick enough.
 DRAG_LADDER = (
     Quality(scale=0.5, step=2.0, light=2.0),
@@ -248,8 +250,9 @@ class RenderWorker(QObject):
         quality = DRAG_LADDER[self._rung] if request.interactive else FULL
         quality = replace(quality, scale=quality.scale * self._scale)
         with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
-            count = 1 if request.interactive else request.frames
-            for index in range(count):
+            most = count = 1 if request.interactive else request.frames
+            index, began = 0, time.perf_counter()
+            while index < count:
                 started = time.perf_counter()
                 for done in accumulation.add_frame():
                     if self._stopping or self._outdated(request):
@@ -257,8 +260,10 @@ class RenderWorker(QObject):
                     if not request.interactive or time.perf_counter() - started > SLOW_SECONDS:
                         self.progress.emit((index + done) / count)
                 seconds = time.perf_counter() - started
-                self.picture.emit(_picture(accumulation, request, seconds))
-                if not request.interactive and STILL_FRAMES <= index + 1 < count:
+                index += 1
+                count = affordable_frames(most, index, time.perf_counter() - began)
+                self.picture.emit(_picture(accumulation, request, seconds, count))
+                if not request.interactive and STILL_FRAMES <= index < count:
                     self._lend_to_thumbnail(renderer)
                 if request.interactive:
                     self._choose_rung(seconds)
@@ -374,7 +379,17 @@ def _accumulation(renderer: Any, scene: Scene, size: tuple[int, int], quality: Q
             renderer.device.collect()
 
 
-def _picture(accumulation: Any, request: ViewRequest, seconds: float) -> Picture:
+def affordable_frames(most: int, drawn: int, seconds: float) -> int:
+    """Return how many of a picture's frames to draw, when some are drawn and took so many seconds.
+
+    A slow device settles on fewer frames, unless the user asked for many.
+    """
+    if most > STILL_FRAMES:
+        return most
+    return min(most, max(2, drawn, int(STILL_SECONDS * drawn / max(seconds, 1e-6))))
+
+
+def _picture(accumulation: Any, request: ViewRequest, seconds: float, wanted: int) -> Picture:
     shown = _image(accumulation)
     return Picture(
         shown,
@@ -383,7 +398,7 @@ def _picture(accumulation: Any, request: ViewRequest, seconds: float) -> Picture
         seconds,
         accumulation.frames,
         request.interactive,
-        request.frames,
+        wanted,
     )
 
 

@@ -27,6 +27,7 @@ from ..generated import ChoiceBox, bind_slider, labelled, slider_for
 from ..quality import QUALITIES, chosen_quality, remember_quality
 from ..section import Section
 from ..theme import THEMES, current_theme
+from ..worker import STILL_SECONDS
 from .page import Page
 
 #: Linear RGBA by name; without a background the window shows its grey.
@@ -117,7 +118,10 @@ class ViewPage(Page):
 
     def _quality_row(self) -> QWidget:
         self.quality.setAccessibleName("Quality")
-        self.quality.setToolTip("How far a still picture is refined: jittered frames that it accumulates")
+        self.quality.setToolTip(
+            "How far a still picture is refined: jittered frames that it accumulates. Draft and Normal make "
+            f"do with fewer if they take longer than {STILL_SECONDS:.0f} s"
+        )
         for quality in QUALITIES:
             self.quality.addItem(f"{quality.title} ({quality.frames} frames)", quality)
         self.quality.setCurrentIndex(QUALITIES.index(chosen_quality()))
