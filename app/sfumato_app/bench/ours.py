@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import sfumato
+from sfumato.renderer import FULL, Quality
 
 from .contender import Unavailable
 from .setting import Setting
@@ -14,13 +15,18 @@ from .setting import Setting
 #: Degrees within which a moving light swings to and fro, and how far it gets a frame. Centred on the resting
 #: light, so that on the whole the frames of both ask for the same work.
 SWING, STRIDE = 21, 8
+#: Degrees a frame by which a light trembles: for the eye it rests, but nothing kept can help.
+TRIFLE = 1e-4
 
 
 class Ours:
-    """One of our techniques, its light at rest."""
+    """One of our techniques, its light at rest: what it keeps of its light from frame to frame it uses."""
 
-    def __init__(self, renderer: sfumato.Renderer, setting: Setting, technique: str) -> None:
+    def __init__(
+        self, renderer: sfumato.Renderer, setting: Setting, technique: str, quality: Quality = FULL
+    ) -> None:
         self._renderer = renderer
+        self._quality = quality
         self._size = setting.picture_size
         self._light = np.zeros((0, 0, 3), dtype=np.float32)
         self._keep = False
@@ -32,7 +38,7 @@ class Ours:
 
     def draw(self) -> None:
         """Draw the first frame of a new picture: its jitter, and with it the work, is always the same."""
-        accumulation = self._renderer.begin(self.next_scene(), self._size)
+        accumulation = self._renderer.begin(self.next_scene(), self._size, self._quality)
         try:
             for _ in accumulation.add_frame():
                 pass
@@ -54,21 +60,41 @@ class Ours:
 
 
 class MovingLight(Ours):
-    """One of our techniques while somebody moves the lamp: no two frames in a row have the same light."""
+    """One of our techniques while somebody moves the lamp: no two frames in a row have the same light.
 
-    def __init__(self, renderer: sfumato.Renderer, setting: Setting, technique: str, angle: str) -> None:
-        super().__init__(renderer, setting, technique)
-        self._path = f"lights.0.{angle}"
-        self._angles = _swing(getattr(setting, angle))
+    Parameters
+    ----------
+    angle : str
+        What moves: ``rotation`` or ``tilt``.
+    swing : int
+        Degrees within which it moves, in strides; with 1 it only trembles.
+    """
+
+    def __init__(
+        self,
+        renderer: sfumato.Renderer,
+        setting: Setting,
+        technique: str,
+        angle: str,
+        swing: int = SWING,
+        quality: Quality = FULL,
+    ) -> None:
+        super().__init__(renderer, setting, technique, quality)
+        self._paths = [f"lights.{k}.{angle}" for k in range(len(self._scene.lights))]
+        self._starts = [getattr(light, angle) for light in self._scene.lights]
+        self._turns = _swing(swing)
 
     def next_scene(self) -> sfumato.Scene:
-        """Return the scene with the light moved on."""
-        return self._scene.with_({self._path: next(self._angles)})
+        """Return the scene with its lights moved on."""
+        turn = next(self._turns)
+        return self._scene.with_(
+            {path: start + turn for path, start in zip(self._paths, self._starts, strict=True)}
+        )
 
 
-def _swing(middle: float) -> Iterator[float]:
-    """Angles in degrees around a middle that do not repeat: nothing kept from an earlier frame can help."""
+def _swing(swing: int) -> Iterator[float]:
+    """Degrees around 0 that do not repeat: nothing kept from an earlier frame can help."""
     count = 0
     while True:
-        yield middle + (count * STRIDE) % SWING - SWING // 2 + 1e-4 * count
+        yield (count * STRIDE) % swing - swing // 2 + TRIFLE * count
         count += 1

@@ -47,7 +47,12 @@ RATIOS = (
     Ratio("shadows / local shading", "multidirectional", "slices-phong", Goal(1.39, gpu=True)),
     Ratio("VTK unshaded / ours", "vtk-gpu", "raycast", Goal(4.0, at_least=True)),
     Ratio("VTK shaded / ours", "vtk-gpu-shaded", "raycast-phong"),
-    Ratio("VTK shadows / ours", "vtk-gpu-shadows", "multidirectional", Goal(4.0, at_least=True)),
+    Ratio("VTK shadows / ours", "vtk-gpu-shadows", "multidirectional", Goal(14.0, at_least=True)),
+    Ratio("VTK shadows / cone", "vtk-gpu-shadows", "cone-turning", Goal(10.0, at_least=True)),
+    Ratio("cone / the published footprint", "cone-turning", "multidirectional-turning", Goal(1.5)),
+    Ratio("a drag's frame / ray casting", "cone-drag", "raycast", Goal(1.2)),
+    Ratio("a drag's frame / ray casting", "multidirectional-drag", "raycast"),
+    Ratio("light kept / light moved", "cone-still", "cone"),
     Ratio("VTK on the CPU / ours", "vtk-cpu", "raycast"),
 )
 

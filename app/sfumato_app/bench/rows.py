@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import sfumato
+from sfumato.renderer import DRAG, FULL, Quality
 
 from .contender import Contender
-from .ours import MovingLight, Ours
+from .ours import SWING, MovingLight, Ours
 from .setting import Setting
 
 if TYPE_CHECKING:
@@ -86,6 +87,11 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("multidirectional", "multidirectional occlusion", _ours("multidirectional")),
         ("multidirectional-turning", "... its light turning", _moving("multidirectional", "rotation")),
         ("multidirectional-tilting", "... its light tilting", _moving("multidirectional", "tilt")),
+        ("multidirectional-drag", "... at drag quality", _moving("multidirectional", "rotation", quality=DRAG)),
+        ("cone", "cone-accurate shadows, their light trembling", _moving("cone", "rotation", swing=1)),
+        ("cone-still", "... its light kept from the frame before", _ours("cone")),
+        ("cone-turning", "... its light turning", _moving("cone", "rotation")),
+        ("cone-drag", "... at drag quality, its light turning", _moving("cone", "rotation", quality=DRAG)),
         ("vtk-gpu-shadows", "VTK GPU mapper, volumetric shadows", _vtk("gpu_shadow_mapper", shade=True)),
     )
     return tuple(Row(key, label, key.startswith("vtk-"), setting, make) for key, label, make in table)
@@ -95,8 +101,10 @@ def _ours(technique: str) -> Callable[[Stage, Setting], Contender]:
     return lambda stage, setting: Ours(stage.renderer, setting, technique)
 
 
-def _moving(technique: str, angle: str) -> Callable[[Stage, Setting], Contender]:
-    return lambda stage, setting: MovingLight(stage.renderer, setting, technique, angle)
+def _moving(
+    technique: str, angle: str, swing: int = SWING, quality: Quality = FULL
+) -> Callable[[Stage, Setting], Contender]:
+    return lambda stage, setting: MovingLight(stage.renderer, setting, technique, angle, swing, quality)
 
 
 def _vtk(mapper: str, *, shade: bool) -> Callable[[Stage, Setting], Contender]:
