@@ -117,9 +117,11 @@ def _in_memory(
     try:
         image = reader.Execute()
     except RuntimeError as error:
-        raise task.error(
-            f"its voxels cannot be read ({_reason(error)})", "copy or export it again"
-        ) from error
+        if "No such file" in (reason := _reason(error)):
+            raise task.error(
+                "the file of voxels that it names is missing", "put it where its header says"
+            ) from error
+        raise task.error(f"its voxels cannot be read ({reason})", "copy or export it again") from error
     array = sitk.GetArrayViewFromImage(image)
     shape = (size[2], size[1], size[0])
     array = array.reshape(-1, *shape, count)[frame] if count > 1 else array.reshape(-1, *shape)[frame]

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import LoadError
 from .reading import Reading, Source, Task, check_claim, need, pick_frame
 from .units import length_mm
 from .voxels import component_notice, is_colour, one_value
@@ -32,7 +33,11 @@ def read(task: Task) -> Reading:
     file = tifffile.TiffFile(task.path)
     try:
         with _complaints() as complaints:
-            reading = _reading(file, task)
+            try:
+                reading = _reading(file, task)
+            except LoadError:
+                if not complaints:
+                    raise
         if complaints:  # tifffile goes on with the pages before the fault
             raise task.error(
                 f"its directory of pages is damaged after {len(file.pages)}", "copy or export it again"

@@ -22,6 +22,8 @@ def read(task: Task) -> Reading:
         head = stream.read(4096)
     reader = _xml_reader(head, task) if head.lstrip().startswith(b"<") else _legacy_reader(head, task)
     grid = _run(reader, task)
+    if re.match(rb"# vtk[^\n]*\n[^\n]*\n\s*ASCII", head, re.IGNORECASE):
+        _check_words(grid, task)
     need("vtkmodules.util.numpy_support", task)
     notices: list[str] = []
     if grid.IsA("vtkRectilinearGrid"):
@@ -101,6 +103,23 @@ def _check_extent(reader: Any, task: Task) -> None:
         count *= max(0, int(high) - int(low) + 1)
     check_claim(task, count, task.path.stat().st_size, compressed=True)
     check_memory(task, count)
+
+
+def _check_words(grid: Any, task: Task) -> None:
+    """Refuse a text file with fewer words than values: VTK reads on past its end, and says nothing."""
+    values = sum(
+        attributes.GetAbstractArray(i).GetNumberOfValues()
+        for attributes in (grid.GetPointData(), grid.GetCellData())
+        for i in range(attributes.GetNumberOfArrays())
+    )
+    words, before = 0, False
+    with task.path.open("rb") as stream:
+        while chunk := stream.read(1 << 24):
+            inked = np.frombuffer(chunk, np.uint8) > ord(" ")
+            words += int(np.count_nonzero(inked[1:] & ~inked[:-1])) + int(inked[0] and not before)
+            before = bool(inked[-1])
+    if words < values:
+        raise task.error("it ends before its last value", "it is truncated: copy or export it again")
 
 
 # -- voxels ----------------------------------------------------------------------------------------

@@ -191,3 +191,33 @@ def test_import_is_quick_and_public() -> None:
         == "[]\n"
     )
     assert sfumato.load is load
+
+
+def test_a_text_file_that_ends_early_is_no_volume(tmp_path: Path) -> None:
+    header = "# vtk DataFile Version 2.0\nx\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 4 5 6\n"
+    for axis, count in (("X", 4), ("Y", 5), ("Z", 6)):
+        header += f"{axis}_COORDINATES {count} float\n{' '.join(map(str, range(count)))}\n"
+    header += "POINT_DATA 120\nSCALARS s float\nLOOKUP_TABLE default\n"
+    values = [f"{n / 7:.6f}" for n in range(120)]
+    path = tmp_path / "text.vtk"
+    path.write_text(header + "\n".join(values) + "\n", encoding="ascii")
+    assert load(path).dims == (4, 5, 6)
+    path.write_text(header + "\n".join(values[:70]), encoding="ascii")
+    with pytest.raises(LoadError, match="ends before its last value"):
+        load(path)
+
+
+def test_a_stack_cut_off_is_not_called_one_slice(tmp_path: Path) -> None:
+    path = tmp_path / "stack.tif"
+    tifffile.imwrite(path, np.zeros((12, 16, 16), np.uint8), imagej=True)
+    path.write_bytes(path.read_bytes()[:-200])
+    with pytest.raises(LoadError, match="damaged"):
+        load(path)
+
+
+def test_a_header_without_its_voxels_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "head.mhd"
+    sitk.WriteImage(sitk.GetImageFromArray(np.zeros((4, 5, 6), np.uint8)), str(path), useCompression=True)
+    (tmp_path / "head.zraw").unlink()
+    with pytest.raises(LoadError, match=r"is missing"):
+        load(path)
