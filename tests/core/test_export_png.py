@@ -135,17 +135,13 @@ def test_linear_pictures(tmp_path):
         write_linear(tmp_path / "a.tif", pixels)
 
 
-def test_dicom_is_found_by_content_not_by_name(tmp_path, picture):
-    pytest.importorskip("highdicom")
+def write_dicom(study: Path, series: str, uid: str, count: int = 4) -> None:
+    """Write a series of a patient whose name nothing may tell."""
     from pydicom.dataset import FileDataset, FileMetaDataset
     from pydicom.uid import CTImageStorage, ExplicitVRLittleEndian, generate_uid
 
-    import sfumato
-
-    study = tmp_path / "DOE^JOHN"
-    study.mkdir()
-    series, uid = generate_uid(), generate_uid()
-    for i in range(4):
+    study.mkdir(exist_ok=True)
+    for i in range(count):
         meta = FileMetaDataset()
         meta.TransferSyntaxUID, meta.MediaStorageSOPClassUID = ExplicitVRLittleEndian, CTImageStorage
         meta.MediaStorageSOPInstanceUID = generate_uid()
@@ -159,8 +155,19 @@ def test_dicom_is_found_by_content_not_by_name(tmp_path, picture):
         image.SamplesPerPixel, image.PhotometricInterpretation = 1, "MONOCHROME2"
         image.BitsAllocated, image.BitsStored, image.HighBit, image.PixelRepresentation = 16, 16, 15, 1
         image.RescaleSlope, image.RescaleIntercept = 1, -1024
-        image.PixelData = np.full((8, 8), 100 * i, "<i2").tobytes()
-        image.save_as(study / f"JOHN{i}.dcm", enforce_file_format=True)
+        image.PixelData = np.full((8, 8), 100 * i + 10 * count, "<i2").tobytes()
+        image.save_as(study / f"JOHN{series[-6:]}{i}.dcm", enforce_file_format=True)
+
+
+def test_dicom_is_found_by_content_not_by_name(tmp_path, picture):
+    pytest.importorskip("highdicom")
+    from pydicom.uid import generate_uid
+
+    import sfumato
+
+    study = tmp_path / "DOE^JOHN"
+    series, uid = generate_uid(), generate_uid()
+    write_dicom(study, series, uid)
     scene = Scene(volume=sfumato.load(study))
     text = scene_text(scene)
     assert "JOHN" not in text
@@ -173,3 +180,42 @@ def test_dicom_is_found_by_content_not_by_name(tmp_path, picture):
     (tmp_path / "a.png").rename(tmp_path / "elsewhere" / "a.png")
     with pytest.raises(LoadError, match="not beside it"):
         open_png(tmp_path / "elsewhere" / "a.png")
+
+
+def test_a_second_series_is_found_too(tmp_path, picture):
+    pytest.importorskip("highdicom")
+    from pydicom.uid import generate_uid
+
+    import sfumato
+
+    study, uid = tmp_path / "study", generate_uid()
+    for count in (6, 4):
+        write_dicom(study, generate_uid(), uid, count)
+    second = sfumato.io.find_series(study)[1]
+    scene = Scene(volume=sfumato.load(study, series=second.key))
+    assert scene.volume.dims[2] == 4
+    write_png(tmp_path / "a.png", picture, scene)
+    assert open_png(tmp_path / "a.png") == scene
+
+
+def test_a_halved_volume_is_found_too(tmp_path, picture):
+    import sfumato
+
+    np.save(tmp_path / "head.npy", np.arange(8 * 8 * 8, dtype=np.uint16).reshape(8, 8, 8))
+    scene = Scene(volume=sfumato.io.reduce_volume(sfumato.load(tmp_path / "head.npy")))
+    write_png(tmp_path / "a.png", picture, scene)
+    assert open_png(tmp_path / "a.png").volume == scene.volume
+
+
+def test_a_stack_of_pictures_is_found_by_its_content(tmp_path, picture):
+    import sfumato
+
+    stack = tmp_path / "Doe"
+    stack.mkdir()
+    for i in range(4):
+        Image.fromarray(np.full((8, 8), 40 * i, np.uint8)).save(stack / f"{i}.tif")
+    scene = Scene(volume=sfumato.load(stack))
+    assert "Doe" not in scene_text(scene)
+    for name in ("a.png", "b.png"):
+        write_png(tmp_path / name, picture, scene)
+    assert open_png(tmp_path / "b.png") == scene

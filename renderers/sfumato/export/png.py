@@ -3,7 +3,7 @@
 The scene is JSON in an ``iTXt`` chunk with the keyword ``sfumato-scene``:
 ``{"program": "sfumato 0.1.0", "scene": {…}}``. The scene names its volume by content hash and file name;
 folders, which can tell more than a picture should, are left out. So are the names of DICOM files and of
-folders, which are often a patient's: such a volume is looked for beside the picture by its content alone.
+folders, which are often a patient's: such slices are looked for beside the picture by their content alone.
 A TIFF of ours carries the same text as its description.
 """
 
@@ -179,7 +179,7 @@ def _volume_beside(picture: Path, reference: Any) -> Volume:
             picture, "the scene in this picture does not say where its volume is", "name the volume too"
         )
     if not named:
-        return _dicom_beside(picture, str(key))
+        return _unnamed_beside(picture, str(key))
     # Only ever a name beside the picture: what a stranger's picture says is no path to follow.
     name = _file_name(named)
     place: str | Path = name if name.startswith(SAMPLE) else picture.parent / name
@@ -190,20 +190,33 @@ def _volume_beside(picture: Path, reference: Any) -> Volume:
     return load_known(place, key)
 
 
-def _dicom_beside(picture: Path, key: str) -> Volume:
-    """Return the DICOM volume with a key from the picture's folder or a folder beside the picture."""
+def _unnamed_beside(picture: Path, key: str) -> Volume:
+    """Return the DICOM volume or stack of slices with a key from the picture's folder or a folder beside it."""
     from ..io import load_known
 
     here = picture.parent
-    for place in [here, *sorted(p for p in here.iterdir() if p.is_dir())][:MAX_FOLDERS]:
-        if any(_is_dicom(p) for p in islice(place.iterdir(), 8) if p.is_file()):
+    folders = sorted(p for p in here.iterdir() if p.is_dir())
+    for place in [here, *folders][:MAX_FOLDERS]:
+        if _holds_slices(place):
             try:
                 return load_known(place, key)
             except LoadError:
                 continue
     raise LoadError(
-        picture, "its DICOM images are not beside it", "put the picture beside their folder, or name it too"
+        picture, "its slices are not beside it", "put the picture beside their folder, or name it too"
     )
+
+
+def _holds_slices(place: Path) -> bool:
+    """Tell whether a folder holds DICOM files, or two pictures of one kind; others are not worth a try."""
+    from ..io.tiff import SLICE_SUFFIXES
+
+    try:
+        files = [p for p in islice(place.iterdir(), 64) if p.is_file()]
+    except OSError:
+        return False
+    kinds = [p.suffix.lower() for p in files]
+    return any(kinds.count(kind) > 1 for kind in SLICE_SUFFIXES) or any(map(_is_dicom, files[:8]))
 
 
 def _is_dicom(path: Path) -> bool:
