@@ -26,7 +26,7 @@ from sfumato.techniques.frame import FULL, Quality
 #: Jittered frames that a still picture accumulates.
 STILL_FRAMES = 8
 #: Seconds after which a still picture of so many frames is good enough with fewer, but two at least.
-STILL_SECONDS = 20.0
+STILL_SECONDS = 18.0
 #: Qualities while the user drags, finest first; the worker keeps to the finest that is quick enough.
 DRAG_LADDER = (
     Quality(scale=0.5, step=2.0, light=2.0),
