@@ -11,7 +11,9 @@ from pathlib import Path
 import sfumato
 
 from . import machine
+from .growth import BASE, FACTORS, QUICK_BASE, QUICK_FACTORS, measure_growth, save_growth_plot
 from .measure import run, warm_up
+from .plot import save_plot
 from .ratios import outcomes
 from .report import Report, save_pictures
 from .rows import Row, Stage, rows
@@ -42,6 +44,8 @@ def main(argv: Sequence[str]) -> int:
     except SystemExit as stop:  # argparse's way to say that it has said all
         return int(stop.code or 0)
     try:
+        if options.growth:
+            return _growth(options)
         report = measure(chosen, options.rounds, sys.stderr.isatty())
         print(report.text())
         _write(report, options)
@@ -84,6 +88,17 @@ def measure(chosen: Sequence[Row], rounds: int, talkative: bool = False) -> Repo
         stage.close()
 
 
+def _growth(options: argparse.Namespace) -> int:
+    """Measure how cost grows, print it, and write what was asked for."""
+    task = (QUICK_BASE, QUICK_FACTORS) if options.quick else (BASE, FACTORS)
+    growth = measure_growth(*task, _tell if sys.stderr.isatty() else _say_nothing)
+    print(growth.text())
+    if options.json is not None:
+        options.json.write_text(json.dumps(growth.to_json(), indent=1) + "\n", encoding="utf-8")
+    _plot(lambda path: save_growth_plot(growth, path), options.plot)
+    return 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="sfumato bench",
@@ -99,6 +114,12 @@ def _parser() -> argparse.ArgumentParser:
         parser.add_argument(f"--{name}", type=kind, metavar="N", help=text)
     ids = ", ".join(row.id for row in rows(Setting()))
     parser.add_argument("--quick", action="store_true", help="a smaller task and fewer rounds")
+    parser.add_argument(
+        "--growth",
+        action="store_true",
+        help="how the cost of a frame grows with volume, viewport, slices and lights, and how near to the "
+        "device's fetch ceiling techniques come",
+    )
     parser.add_argument("--only", metavar="ID,...", help=f"only these rows: {ids}")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all measurements")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the medians (needs matplotlib)")
@@ -137,13 +158,15 @@ def _write(report: Report, options: argparse.Namespace) -> None:
         options.json.write_text(json.dumps(report.to_json(), indent=1) + "\n", encoding="utf-8")
     if options.pictures is not None:
         save_pictures(report.results, options.pictures)
-    if options.plot is not None:
-        from .plot import save_plot
+    _plot(lambda path: save_plot(report, path), options.plot)
 
-        try:
-            save_plot(report, options.plot)
-        except ImportError:
-            print("no plot: matplotlib is not installed", file=sys.stderr)
+
+def _plot(save: Callable[[Path], None], path: Path | None) -> None:
+    try:
+        if path is not None:
+            save(path)
+    except ImportError:
+        print("no plot: matplotlib is not installed", file=sys.stderr)
 
 
 def _tell(text: str) -> None:

@@ -87,7 +87,11 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("multidirectional", "multidirectional occlusion", _ours("multidirectional")),
         ("multidirectional-turning", "... its light turning", _moving("multidirectional", "rotation")),
         ("multidirectional-tilting", "... its light tilting", _moving("multidirectional", "tilt")),
-        ("multidirectional-drag", "... at drag quality", _moving("multidirectional", "rotation", quality=DRAG)),
+        (
+            "multidirectional-drag",
+            "... at drag quality",
+            _moving("multidirectional", "rotation", quality=DRAG),
+        ),
         ("cone", "cone-accurate shadows, their light trembling", _moving("cone", "rotation", swing=1)),
         ("cone-still", "... its light kept from the frame before", _ours("cone")),
         ("cone-turning", "... its light turning", _moving("cone", "rotation")),

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
+
 import sfumato
 
 from .phantom import EDGE_MM, TRANSFER, phantom
@@ -32,6 +34,8 @@ class Setting:
         Sampling distance in voxels.
     tilt, aperture, rotation : float
         The light, in degrees.
+    lights : int
+        Number of lamps, 1 to 4, spread evenly about the view axis; all as bright together as one.
     """
 
     size: int = 256
@@ -40,6 +44,14 @@ class Setting:
     tilt: float = 37.0
     aperture: float = 20.0
     rotation: float = 135.0
+    lights: int = 1
+
+    @classmethod
+    def sliced(cls, size: int, viewport: int, slices: int, lights: int) -> Setting:
+        """Return the setting whose sampling distance cuts the volume's depth into a number of slices."""
+        corners = np.array([(x, y, z) for x in (0, EDGE_MM) for y in (0, EDGE_MM) for z in (0, EDGE_MM)])
+        depth = float(np.ptp(corners @ np.asarray(CAMERA.basis().forward)))
+        return cls(size=size, viewport=viewport, step=depth / slices / (EDGE_MM / size), lights=lights)
 
     @property
     def picture_size(self) -> tuple[int, int]:
@@ -48,9 +60,15 @@ class Setting:
 
     def scene(self, technique: str) -> sfumato.Scene:
         """Return the scene for one of our techniques; on black, so that peers' pictures can be compared."""
-        light = sfumato.Light(tilt=self.tilt, aperture=self.aperture, rotation=self.rotation)
+        lights = tuple(
+            sfumato.Light(
+                tilt=self.tilt, aperture=self.aperture, intensity=1 / self.lights,
+                rotation=self.rotation + k * 360 / self.lights,
+            )
+            for k in range(self.lights)
+        )  # fmt: skip
         return sfumato.Scene(
-            volume=phantom(self.size), transfer=TRANSFER, camera=CAMERA, lights=(light,), technique=technique,
+            volume=phantom(self.size), transfer=TRANSFER, camera=CAMERA, lights=lights, technique=technique,
             step=self.step, background=(0.0, 0.0, 0.0, 1.0),
         )  # fmt: skip
 
