@@ -185,3 +185,21 @@ def test_closing_with_unsaved_work_asks(window: MainWindow, qtbot: QtBot, answer
     assert "ball" in asked[0]
     assert window.isVisible() is stays
     assert window.worker.alive is stays
+
+
+def test_what_is_dropped_last_is_shown_whatever_was_under_way(
+    make_window: Any, hand_of: Any, qtbot: QtBot, tmp_path: Path
+) -> None:
+    for n in (30, 20, 16):
+        z, y, x = np.mgrid[:n, :n, :n] * (2 / (n - 1)) - 1
+        np.save(tmp_path / f"{n}.npy", np.clip(400 * (0.8 - np.sqrt(x * x + y * y + z * z)), 0, 200))
+    window = make_window()
+    drop(window, tmp_path / "30.npy")
+    drop(window, tmp_path / "20.npy")  # while the first is read
+    qtbot.waitUntil(lambda: window.viewport.picture is not None, timeout=60_000)
+    assert window.editor.scene.volume.dims == (20, 20, 20)
+    drop(window, tmp_path / "16.npy")  # while the second is refined
+    qtbot.waitUntil(lambda: window.editor.scene.volume.dims == (16, 16, 16), timeout=30_000)
+    hand_of(window).wait_for_picture()
+    assert window.viewport.picture.scene.volume.dims == (16, 16, 16)
+    assert window.messages.kind in ("", "notice")

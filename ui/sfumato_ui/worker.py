@@ -121,7 +121,8 @@ class RenderWorker(QObject):
         #: Whether the still picture of the newest view is finished.
         self._settled = False
         self._stopping = False
-        self._rung = 0
+        #: The coarsest at first: how quick the device is, is not known, and the first picture must be soon.
+        self._rung = len(DRAG_LADDER) - 1
         self._scale = 1.0
         self._thread = threading.Thread(target=self._run, name="sfumato-render", daemon=True)
 
