@@ -115,7 +115,7 @@ def test_millimetres_to_tiff_with_scale_bar(
     for box in (dialog.transparent, dialog.scale_bar):
         qtbot.mouseClick(box, LEFT, pos=QPoint(8, box.height() // 2))
     choose(dialog.format, qtbot, "TIFF")
-    choose(dialog.bits, qtbot, "16 bits a channel")
+    choose(dialog.bits, qtbot, "16 bits")
     choose(dialog.quality, qtbot, "Draft")
     width, height = dialog.wish.spec.size
     qtbot.mouseClick(dialog.go, LEFT)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
-from qtpy.QtCore import QPoint, Qt, QTimer
+from qtpy.QtCore import QPoint, Qt
 from qtpy.QtGui import QColor
 from qtpy.QtWidgets import QApplication, QColorDialog
 
@@ -151,14 +151,11 @@ def test_typing_and_turning_the_intensity(lit: MainWindow, hand_of: Any, qtbot: 
 def test_colouring_a_lamp(lit: MainWindow, qtbot: QtBot) -> None:
     tools = lit.light_page.tools
 
-    def pick() -> None:
-        dialog = QApplication.activeModalWidget()
-        assert isinstance(dialog, QColorDialog)
-        dialog.setCurrentColor(QColor(255, 0, 0))
-        dialog.accept()
-
-    QTimer.singleShot(200, pick)
     qtbot.mouseClick(tools.color, LEFT)
+    dialog = QApplication.activeModalWidget()
+    assert isinstance(dialog, QColorDialog)
+    dialog.setCurrentColor(QColor(255, 0, 0))
+    dialog.accept()
     assert lit.editor.scene.lights[0].color == pytest.approx((1, 0, 0), abs=1e-3)
     lit.editor.undo()
     assert lit.editor.scene.lights[0].color == (1, 1, 1)

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 from pytestqt.qtbot import QtBot
 from qtpy.QtCore import Qt
@@ -10,6 +16,7 @@ from qtpy.QtWidgets import QAbstractButton, QAbstractSlider, QApplication, QLabe
 
 from sfumato import Scene
 from sfumato.scene import ClipPlane
+from sfumato_ui.section import Section
 from sfumato_ui.tab_order import in_visual_order
 from sfumato_ui.theme import PICTURE_GREY, TARGET, THEMES, Theme
 from sfumato_ui.window import MainWindow
@@ -98,3 +105,29 @@ def test_contrast(theme: Theme) -> None:
     assert contrast(theme.on_accent, theme.accent) >= 4.5
     assert contrast(theme.on_error, theme.error) >= 4.5
     assert contrast("#ffffff", PICTURE_GREY) >= 4.5
+
+
+@pytest.mark.parametrize(("scale", "font"), [(1.0, 1.0), (1.5, 1.0), (2.0, 1.0), (1.0, 1.25)])
+def test_the_walk_finds_nothing_wrong(scale: float, font: float, tmp_path: Path) -> None:
+    """All tabs and dialogs in both themes; what is looked at is told in `panel_walk`."""
+    env = {**os.environ, "QT_SCALE_FACTOR": str(scale), "SFUMATO_SETTINGS": str(tmp_path)}
+    run = subprocess.run(
+        [sys.executable, str(Path(__file__).with_name("panel_walk.py")), str(font), str(tmp_path)],
+        env=env, capture_output=True, text=True, timeout=240, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    found = json.loads(run.stdout.splitlines()[-1])
+    assert found["ratio"] == scale
+    assert found["wrong"] == []
+    if font == 1.0:
+        assert found["picture"] >= 0.62, "the picture keeps its part of 1280 x 720"
+
+
+def test_each_tab_has_at_most_seven_essentials(make_window: object) -> None:
+    """What a tab shows while its sections are closed; a heading's group counts as one."""
+    window: MainWindow = make_window()  # type: ignore[operator]
+    for page in (window.light_page, window.material_page, window.view_page):
+        shown = [page.column.itemAt(i).widget() for i in range(page.column.count())]
+        rows = [w for w in shown if w is not None and not isinstance(w, QLabel | Section)]
+        groups = [w for w in rows if any(in_visual_order(w))]
+        assert 0 < len(groups) <= 7, [type(w).__name__ for w in groups]

@@ -195,17 +195,15 @@ def test_holding_b_is_the_window_s_also_in_the_gallery(plot: TransferPlot, qtbot
         assert window.driver.shown_scene == before
 
 
-def test_the_colour_dialog_is_one_step(plot: TransferPlot, qtbot: QtBot, monkeypatch: Any) -> None:
+def test_the_colour_dialog_is_one_step(plot: TransferPlot, qtbot: QtBot) -> None:
     editor = plot.window().material_page.transfer
     qtbot.mouseClick(plot, Qt.MouseButton.LeftButton, pos=place(plot, 120, 0.9))
 
-    def choose(dialog: QColorDialog) -> int:
-        for name in ("#ff0000", "#00ff00"):
-            dialog.setCurrentColor(QColor(name))
-        return 1
-
-    monkeypatch.setattr(QColorDialog, "exec", choose)
     qtbot.mouseClick(editor.color, Qt.MouseButton.LeftButton)
+    dialog = editor.color.findChild(QColorDialog)
+    for name in ("#ff0000", "#00ff00"):
+        dialog.setCurrentColor(QColor(name))
+    dialog.accept()
     assert points(plot)[1].color == pytest.approx((0, 1, 0))
     undo(plot)
     assert points(plot) == START

@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from qtpy.QtCore import QSize, Qt, Signal
-from qtpy.QtWidgets import QFrame, QHBoxLayout, QMenu, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+    QWidgetAction,
+)
 
 import sfumato_samples
 
@@ -80,7 +89,8 @@ class TopBar(QFrame):
         menu.addAction("Folder…\tCtrl+Shift+O", self.folder_wanted.emit)
         self.recent = RecentMenu(menu)
         menu.addMenu(self.recent)
-        menu.addSection("Samples")
+        menu.addSeparator()
+        menu.addAction(_menu_heading("Samples", menu))
         for entry in sfumato_samples.catalogue():
             action = menu.addAction(entry.title)
             action.setToolTip(entry.description)
@@ -110,6 +120,16 @@ class TopBar(QFrame):
             (self.before, "unlit"), (self.picture, "picture"),
         ):  # fmt: skip
             button.setIcon(icon(name, theme))
+
+
+def _menu_heading(text: str, menu: QMenu) -> QWidgetAction:
+    """Return a title for what follows in a menu; a section's own would be hidden by the style sheet."""
+    label = QLabel(text)
+    label.setProperty("muted", True)
+    label.setContentsMargins(12, 2, 12, 2)
+    action = QWidgetAction(menu)
+    action.setDefaultWidget(label)
+    return action
 
 
 class ToolStrip(QFrame):

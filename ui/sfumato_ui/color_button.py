@@ -62,11 +62,11 @@ class ColorButton(QPushButton):
         dialog.setWindowTitle(self._name)
         dialog.currentColorChanged.connect(lambda color: self.picked.emit(to_linear(color)))
         before = self._color
+        dialog.rejected.connect(lambda: self.picked.emit(before))
+        dialog.finished.connect(self.closed)
+        dialog.finished.connect(dialog.deleteLater)
         self.opened.emit()
-        if not dialog.exec():
-            self.picked.emit(before)
-        self.closed.emit()
-        dialog.deleteLater()
+        dialog.open()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the colour inside the button's frame."""

@@ -28,7 +28,7 @@ from .settings import settings
 #: Jittered frames by quality.
 QUALITIES = {"Draft": 2, "Normal": 8, "Fine": 32}
 FORMATS = {"PNG": ".png", "TIFF": ".tif"}
-DEPTHS = {"8 bits a channel": 8, "16 bits a channel": 16}
+DEPTHS = {"8 bits": 8, "16 bits": 16}
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class ExportDialog(QDialog):
         self.dpi.setToolTip("Pixels per inch on paper; written into the file")
         self.format = _choice("Format", list(FORMATS))
         self.bits = _choice("Depth", list(DEPTHS))
-        self.bits.setToolTip("16 bits keep smooth shades smooth when the picture is edited")
+        self.bits.setToolTip("Bits a channel: 16 keep smooth shades smooth when the picture is edited")
         self.quality = _choice("Quality", list(QUALITIES))
         self.quality.setToolTip("Draft, normal, fine: 2, 8 or 32 pictures are averaged")
         self.transparent = QCheckBox("Transparent background")

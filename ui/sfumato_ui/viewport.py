@@ -33,7 +33,7 @@ from . import camera_moves, overlay
 from .clip_planes import ClipPlanes
 from .dial import MOVE
 from .editing import Editor
-from .theme import PICTURE_GREY, current_theme
+from .theme import DARK, PICTURE_GREY
 from .tools import ClipTool, HandleTool, LightTool, PictureView
 from .tools import light as light_tool
 from .worker import Picture
@@ -168,7 +168,7 @@ class Viewport(QWidget):
             overlay.draw_hint(painter, self.rect(), self.hint)
         if self.hasFocus():
             painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.setPen(QPen(QColor(current_theme().accent), 2))
+            painter.setPen(QPen(QColor(DARK.accent), 2))
             painter.drawRect(self.rect().adjusted(1, 1, -1, -1))
 
     def _paint_tool(self, painter: QPainter) -> None:

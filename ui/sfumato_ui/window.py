@@ -47,6 +47,8 @@ from .viewport import Viewport
 from .worker import RenderWorker
 
 PANEL_WIDTH = 320
+#: With larger letters the panel is so many lines' heights wide.
+PANEL_LINES = 21
 HINT = "Shift-drag moves the light"
 #: Longest wait in seconds for the render thread when the window closes; events go on meanwhile.
 CLOSE_SECONDS = 5.0
@@ -96,7 +98,7 @@ class MainWindow(QMainWindow):
         self.panel = QTabWidget()
         self.panel.setObjectName("Panel")
         self.panel.setDocumentMode(True)
-        self.panel.setFixedWidth(PANEL_WIDTH)
+        self.panel.setFixedWidth(max(PANEL_WIDTH, PANEL_LINES * self.fontMetrics().height()))
         self.panel.tabBar().setDrawBase(False)
         self.panel.tabBar().setAccessibleName("Panels")
         # Its bar alone takes the focus: the tab widget hands it on, and Tab would never get past it.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from qtpy.QtCore import Qt, Signal
-from qtpy.QtWidgets import QHBoxLayout, QLabel, QWidget
+from qtpy.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from sfumato import Light, Scene
 from sfumato.scene import fields_of, nearest_possible_tilt
@@ -56,7 +56,7 @@ class LightPage(Page):
             self.rotation,
             self.aperture,
             self.rigs,
-            labelled("Technique", self.technique),
+            self._technique_row(),
             self.note,
         ):
             self.add(widget)
@@ -91,6 +91,16 @@ class LightPage(Page):
             box.addItem(technique.title, technique.id)
             box.setItemData(i, technique.summary, Qt.ItemDataRole.ToolTipRole)
         return box
+
+    def _technique_row(self) -> QWidget:
+        """Return the menu below its label: the longest title needs the panel's width."""
+        row = QWidget()
+        column = QVBoxLayout(row)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(2)
+        column.addWidget(QLabel("Technique"))
+        column.addWidget(self.technique)
+        return row
 
     def _attached_menu(self) -> ChoiceBox:
         param = fields_of(Light)["attached"].param

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QFrame, QLabel, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QApplication, QFrame, QLabel, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 
 class Page(QScrollArea):
@@ -22,6 +22,15 @@ class Page(QScrollArea):
         self.verticalScrollBar().rangeChanged.connect(self._keep_width)
         self.column.setSpacing(6)
         self.setWidget(inside)
+        app = QApplication.instance()
+        assert isinstance(app, QApplication)
+        app.focusChanged.connect(self._follow_focus)
+
+    def _follow_focus(self, old: QWidget | None, new: QWidget | None) -> None:
+        """Scroll to a control that Tab reached from outside; within the column Qt does that itself."""
+        inside = new is not None and self.widget() is not None and self.widget().isAncestorOf(new)
+        if inside and new is not None and new.isVisible() and new.visibleRegion().isEmpty():
+            self.ensureWidgetVisible(new)
 
     def _keep_width(self, low: int, high: int) -> None:
         """Take the scroll bar's room from the margin, so that nothing moves when it comes and goes."""
@@ -39,6 +48,8 @@ class Page(QScrollArea):
         """Put a heading at the column's end."""
         label = QLabel(text)
         label.setProperty("heading", True)
+        if self.column.count():
+            label.setContentsMargins(0, 8, 0, 0)
         self.column.addWidget(label)
 
     def finish(self) -> None:
