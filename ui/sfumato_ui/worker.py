@@ -25,7 +25,7 @@ from sfumato.techniques.frame import FULL, Quality
 
 #: Jittered frames that a still picture accumulates.
 STILL_FRAMES = 8
-#: Seconds after which a still picture of so many frames is good enough with fewer, but two at least.
+#: Seconds after which a still picture of so many frames is good enough with fewer.
 STILL_SECONDS = 18.0
 #: Qualities while the user drags, finest first; the worker keeps to the finest that is quick enough.
 DRAG_LADDER = (
@@ -387,7 +387,7 @@ def affordable_frames(most: int, drawn: int, seconds: float) -> int:
     """
     if most > STILL_FRAMES:
         return most
-    return min(most, max(2, drawn, int(STILL_SECONDS * drawn / max(seconds, 1e-6))))
+    return min(most, max(drawn, round(STILL_SECONDS * drawn / max(seconds, 1e-6))))
 
 
 def _picture(accumulation: Any, request: ViewRequest, seconds: float, wanted: int) -> Picture:
