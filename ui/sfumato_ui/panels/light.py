@@ -47,6 +47,8 @@ class LightPage(Page):
         self.note.setProperty("muted", True)
         self.note.setWordWrap(True)
         self.attached = self._attached_menu()
+        # All that a first look needs fits into a window of 1280 x 720.
+        self.column.setSpacing(4)
         self.controls: list[ParamControl] = []
         self._technique_type: object = None
         for widget in (

@@ -18,7 +18,7 @@ class Page(QScrollArea):
         inside = QWidget()
         inside.setObjectName("PanelPage")
         self.column = QVBoxLayout(inside)
-        self.column.setContentsMargins(14, 10, 14, 10)
+        self.column.setContentsMargins(14, 8, 14, 10)
         self.verticalScrollBar().rangeChanged.connect(self._keep_width)
         self.column.setSpacing(6)
         self.setWidget(inside)
@@ -35,7 +35,7 @@ class Page(QScrollArea):
     def _keep_width(self, low: int, high: int) -> None:
         """Take the scroll bar's room from the margin, so that nothing moves when it comes and goes."""
         bar = self.verticalScrollBar().sizeHint().width() if high > low else 0
-        self.column.setContentsMargins(14, 10, 14 - bar, 10)
+        self.column.setContentsMargins(14, 8, 14 - bar, 10)
 
     def add(self, widget: QWidget) -> None:
         """Put a widget at the column's end; it keeps its height however high the window is."""
