@@ -123,6 +123,7 @@ PROGRAMS = (
     ("first-minute", "first_minute", "Measure when a volume dropped on the window is seen."),
     ("gallery", "gallery", "Draw the gallery: the figures of Soltesova2010 with our samples."),
     ("quality", "quality", "Measure how near shadows are to the ray-traced cone."),
+    ("walkthrough", "walkthrough", "Use the window by real events, with a screenshot of each step."),
 )
 
 
