@@ -110,7 +110,7 @@ def _soft(hand: Hand) -> None:
     hand.click(hand.window.light_page.rigs.buttons["top-left"])
     slider = hand.window.light_page.aperture.slider
     y = slider.height() / 2
-    hand.drag(slider, QPointF(0.4 * slider.width(), y), QPointF(0.85 * slider.width(), y))
+    hand.drag(slider, QPointF(0.4 * slider.width(), y), QPointF(0.5 * slider.width(), y))
     hand.rest()
 
 
@@ -126,6 +126,7 @@ def _technique(hand: Hand) -> None:
 
 
 def _scroll_down(hand: Hand, page: QWidget) -> None:
+    pause(100)
     bar = page.verticalScrollBar()  # type: ignore[attr-defined]
     bar.setValue(bar.maximum())
     pause(100)
@@ -133,6 +134,7 @@ def _scroll_down(hand: Hand, page: QWidget) -> None:
 
 # -- Material --------------------------------------------------------------------------------------
 def _material(hand: Hand) -> None:
+    hand.click(hand.window.light_page.rigs.buttons["three-point"])
     hand.choose_tab(1)
     hand.rest()
 
@@ -270,6 +272,7 @@ def _accept(hand: Hand, kind: type[QDialog]) -> None:
     assert dialog is not None
     QTest.keyClick(dialog, Qt.Key.Key_Return)
     hand.wait_until(lambda: _dialog(kind) is None, "end of the dialog")
+    hand.window.activateWindow()
 
 
 def _answer_file(hand: Hand, path: Path) -> None:
@@ -283,6 +286,7 @@ def _answer_file(hand: Hand, path: Path) -> None:
     _type_into(line, str(path.resolve()))
     QTimer.singleShot(0, lambda: QTest.keyClick(line, Qt.Key.Key_Return))
     hand.wait_until(lambda: _dialog(QFileDialog) is None, "end of the file dialog")
+    hand.window.activateWindow()
 
 
 #: In one window on the sample hand.
