@@ -21,6 +21,8 @@ HELP = "Light for volumes: the window on PATH, or on the embedded sample."
 EPILOGUE = (
     "--debug with any command shows tracebacks. Exit status: 0 done, 1 bad input or device, 2 wrong usage."
 )
+#: Size in pixels of the picture that `info --gpu` draws.
+GPU_SIZE = (960, 720)
 
 app = App(
     name="sfumato",
@@ -89,13 +91,23 @@ def info(
     path: Annotated[str, Parameter(help="A volume, a DICOM folder, a scene file, or a picture of ours.")],
     /,
     *,
+    gpu: Annotated[
+        bool,
+        Parameter(
+            negative="", help="Draw it, and list what is on the GPU then (budget: SFUMATO_GPU_BUDGET_MB)."
+        ),
+    ] = False,
     read: ReadFlags = ReadFlags(),  # noqa: B008
 ) -> None:
     """Tell what a volume is; of a scene file or a picture of ours, its scene."""
-    from .opening import is_scene, open_volume
+    from .opening import is_scene, open_scene, open_volume
     from .tables import print_series, print_volume, scene_data
 
-    if is_scene(path):
+    if gpu:
+        from .gpu_listing import print_gpu
+
+        print_gpu(open_scene(path, None, read), GPU_SIZE)
+    elif is_scene(path):
         print(json.dumps(scene_data(path), indent=1))
     else:
         print_volume(path, open_volume(path, read))

@@ -10,7 +10,7 @@ import moderngl
 import numpy as np
 
 from .errors import SceneError
-from .gpu import Device, Program, ShaderSource, Target
+from .gpu import Device, GpuObject, Program, ShaderSource, Target, gpu_objects
 from .scene import Scene
 from .techniques import Painter, technique_for
 from .techniques.frame import DRAG, FULL, Frame, Quality
@@ -24,15 +24,24 @@ MAX_SIDE = 16384
 class Renderer:
     """Draws scenes on a device of its own; to be used on the thread that made it.
 
+    Parameters
+    ----------
+    budget : int, optional
+        Bytes of GPU memory for what is kept for frames to come; if not given, ``SFUMATO_GPU_BUDGET_MB``
+        (MiB), or 2 GiB. What the present frame needs is kept in any case.
+
     Raises
     ------
     GpuError
-        If there is no OpenGL 3.3.
+        If there is no OpenGL 3.3, or the variable is not a number.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, budget: int | None = None) -> None:
         self.device = Device()
+        if budget is not None:
+            self.device.store.budget = budget
         self._painters: dict[tuple[str, ...], Painter] = {}
+        self._names: dict[tuple[str, ...], str] = {}
         self._add = Program(self.device, ShaderSource("shaders/add.frag.glsl"))
         self._resolve = Program(self.device, ShaderSource("shaders/resolve.frag.glsl"))
 
@@ -89,6 +98,7 @@ class Renderer:
         key = (technique.painter, *map(str, sorted(technique.options.items())))
         if key not in self._painters:
             self._painters[key] = technique.make_painter(self.device)
+            self._names[key] = technique.id
         return self._painters[key]
 
     def add(self, frame: Target, total: Target) -> None:
@@ -118,6 +128,15 @@ class Renderer:
         fbo.release()
         texture.release()
         return pixels
+
+    def gpu_objects(self, *pictures: Accumulation) -> list[GpuObject]:
+        """Return what is on the GPU, the largest first: what is kept, each technique's own, and pictures'."""
+        owners: dict[str, Any] = {}
+        for number, (name, thing) in enumerate(self.device.store.things()):
+            owners[name if name not in owners else f"{name} {number}"] = thing
+        owners |= {self._names[key]: painter for key, painter in self._painters.items()}
+        owners |= {f"picture {k}" if k else "picture": picture for k, picture in enumerate(pictures)}
+        return gpu_objects(owners)
 
     def close(self) -> None:
         """Free everything."""
@@ -174,15 +193,16 @@ class Accumulation:
             device, self.scene, self.size, self._latest, self.quality, self.frames, self._corner, self._whole
         )
         pieces = self.renderer.painter(self.scene).paint(frame)
-        try:
-            for progress in pieces:
-                yield progress
-                device.make_current()
-        finally:
-            # A frame that was given up frees what it made: in its own context, whichever is current by then.
-            if device.usable:
-                device.make_current()
-            pieces.close()
+        with device.store.frame():
+            try:
+                for progress in pieces:
+                    yield progress
+                    device.make_current()
+            finally:
+                # A frame that was given up frees what it made: in its own context, whichever is current by then.
+                if device.usable:
+                    device.make_current()
+                pieces.close()
         assert self._total is not None
         self.renderer.add(self._latest, self._total)
         device.wait()

@@ -81,3 +81,15 @@ def test_several_series_are_listed_and_chosen(run, data_dir):
     assert told["modality"] == "CT"
     assert told["dims"].startswith("512 x 512")
     assert "series" in run("info", folder, "--series", 99).failed_with(1)
+
+
+@pytest.mark.gpu
+def test_gpu_objects_are_listed_within_the_budget(run, ball, monkeypatch):
+    monkeypatch.setenv("SFUMATO_GPU_BUDGET_MB", "64")
+    text = run("info", "--gpu", ball).out
+    assert "24 x 24 x 24, 1 x 8 bit" in text
+    told = rows(text)
+    assert float(told["total"]) > 4 * 960 * 720 * 16 / 2**20
+    assert told["budget"].endswith("64.000")
+    monkeypatch.setenv("SFUMATO_GPU_BUDGET_MB", "lots")
+    assert "SFUMATO_GPU_BUDGET_MB" in run("info", "--gpu", ball).failed_with(1)

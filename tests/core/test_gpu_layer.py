@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import threading
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -150,7 +151,7 @@ class Thing:
 
 
 def test_the_store_keeps_what_was_used_last_within_its_budget() -> None:
-    store, things = Store(budget=250), [Thing() for _ in range(6)]
+    store, things = Store(budget=300), [Thing() for _ in range(6)]
     for k, thing in enumerate(things[:3]):
         assert store.get(("thing", k), lambda thing=thing: thing, 100) is thing  # type: ignore[misc]
     assert store.get(("thing", 0), Thing, 100) is things[0], "kept, and now the youngest"
@@ -163,6 +164,49 @@ def test_the_store_keeps_what_was_used_last_within_its_budget() -> None:
     store.clear()
     assert store.bytes_in_use == 0
     assert things[3].released
+
+
+def test_a_frame_keeps_what_it_asked_for_whatever_the_budget() -> None:
+    store, things = Store(budget=100), [Thing() for _ in range(4)]
+
+    def get(number: int) -> None:
+        store.get(("thing", number), lambda: things[number], 80)
+
+    with store.frame():
+        get(0)
+        with store.frame():  # another frame, drawn in between
+            get(1)
+        get(2)
+        assert not any(thing.released for thing in things)
+    get(3)
+    assert [thing.released for thing in things] == [True, True, True, False]
+    assert store.bytes_in_use == 80
+
+
+def test_guests_count_within_the_budget() -> None:
+    @dataclass
+    class Guest:
+        bytes_in_use: int
+
+    store, guest, things = Store(budget=100), Guest(0), [Thing(), Thing()]
+    store.admit("guest", guest)
+    for number, thing in enumerate(things):
+        store.get(("thing", number), lambda thing=thing: thing, 40)  # type: ignore[misc]
+    guest.bytes_in_use = 30
+    store.make_room()
+    assert [thing.released for thing in things] == [True, False]
+    assert store.listing() == [("thing", 40), ("guest", 30)]
+    store.dismiss(guest)
+    assert store.bytes_of_guests == 0
+
+
+def test_the_user_may_set_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SFUMATO_GPU_BUDGET_MB", "64")
+    assert Store().budget == 64 << 20
+    for wrong in ("1.5", "-3", "much", "1"):
+        monkeypatch.setenv("SFUMATO_GPU_BUDGET_MB", wrong)
+        with pytest.raises(GpuError, match="SFUMATO_GPU_BUDGET_MB"):
+            Store()
 
 
 # -- threads ------------------------------------------------------------------------------------------
@@ -216,16 +260,18 @@ def test_no_volume() -> None:
         sfumato.render(Scene())
 
 
-def random_scene(random: np.random.Generator, volumes: list[Volume]) -> Scene:
+def random_scene(random: np.random.Generator, volumes: list[Volume], numbers: tuple[int, ...]) -> Scene:
     """Return any of many scenes, by the fast techniques."""
     fast = [name for name in techniques() if name != "reference"]
     low = random.uniform(20, 60)
     transfer = TransferFunction.from_points(
         [(low, (1, 1, 1), 0), (low + 80, tuple(random.uniform(0, 1, 3)), 0.7)]
     )
-    tilt = float(random.choice([20, 60, 130]))
-    # One light and no clip plane: each number of them is another program, and compiling takes long.
-    lights = [Light(tilt=tilt, rotation=float(random.uniform(0, 360)), aperture=15)]
+    # No clip plane: each number of them, as of lights, is another program, and compiling takes long.
+    lights = [
+        Light(tilt=float(random.choice([20, 60, 130])), rotation=float(random.uniform(0, 360)), aperture=15)
+        for _ in range(random.choice(numbers))
+    ]
     crop = CropBox(low=tuple(random.uniform(0, 0.4, 3)), high=(1, 1, 1))
     volume = volumes[random.integers(len(volumes))]
     return Scene(
@@ -233,35 +279,57 @@ def random_scene(random: np.random.Generator, volumes: list[Volume]) -> Scene:
     )  # fmt: skip
 
 
-def living(device: Device) -> int:
-    """Return how many textures, framebuffers and buffers there are."""
-    kinds = [
-        device._function(f"glIs{kind}", ctypes.c_ubyte, ctypes.c_uint)
-        for kind in ("Texture", "Framebuffer", "Buffer")
-    ]
+def names_of(device: Device, kind: str) -> int:
+    """Return how many objects of a kind there are."""
+    is_one = device._function(f"glIs{kind}", ctypes.c_ubyte, ctypes.c_uint)
     newest = device.ctx.texture((1, 1), 1)
     names = range(1, newest.glo + 1)  # Mesa counts up
     newest.release()
-    return sum(bool(is_one(name)) for is_one in kinds for name in names)
+    return sum(bool(is_one(name)) for name in names)
 
 
-def test_nothing_is_left_behind_by_a_hundred_pictures(still_life: Volume) -> None:
+def living(device: Device) -> int:
+    """Return how many textures, framebuffers and buffers there are."""
+    return sum(names_of(device, kind) for kind in ("Texture", "Framebuffer", "Buffer"))
+
+
+def draw_at_random(still_life: Volume, number: int, lights: tuple[int, ...]) -> None:
+    """Draw pictures of random scenes, some given up, and see that nothing grows and everything is listed."""
     random = np.random.default_rng(7)
     small = still_life.data[::2, ::2, ::2]
     volumes = [Volume(np.ascontiguousarray(small[k:, k:, k:]), spacing=(2, 2, 2)) for k in range(3)]
-    renderer = Renderer()
+    budget = 1 << 20
+    renderer = Renderer(budget)
     device = renderer.device
-    device.store.budget = 1 << 20
-    counts = []
-    for number in range(100):
-        job = renderer.begin(random_scene(random, volumes), (16 + number % 3, 16), Quality(light=2.0))
+    counts, kept = [], []
+    for index in range(number):
+        scene = random_scene(random, volumes, lights)
+        job = renderer.begin(scene, (16 + index % 3, 16), Quality(light=2.0))
         for progress in job.add_frame():
             if random.uniform() < 0.1:  # a newer scene came
                 break
             assert 0 <= progress <= 1
+        listed = renderer.gpu_objects(job)
+        if index % 10 == 0:
+            assert len(listed) == names_of(device, "Texture") + names_of(device, "Buffer"), listed
         job.release()
         device.collect()
-        assert device.store.bytes_in_use <= device.store.budget + (1 << 20)
-        counts.append(living(device))
+        kept.append(device.store.bytes_in_use + device.store.bytes_of_guests)
+        counts.append((living(device), sum(item.size for item in listed)))
     renderer.close()
-    assert max(counts[60:]) <= max(counts[:60]) + 2, counts
+    assert max(kept) <= budget + (1 << 18), "the latest frame's own may come on top"
+    settled = 6 * number // 10
+    for before, after in zip(
+        zip(*counts[:settled], strict=True), zip(*counts[settled:], strict=True), strict=True
+    ):
+        assert max(after) <= 1.02 * max(before) + 2
+
+
+def test_nothing_is_left_behind_by_a_hundred_pictures(still_life: Volume) -> None:
+    draw_at_random(still_life, 100, lights=(2,))
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_nothing_is_left_behind_by_a_thousand_pictures(still_life: Volume) -> None:
+    draw_at_random(still_life, 1000, lights=(1, 2, 3, 4))

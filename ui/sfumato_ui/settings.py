@@ -8,6 +8,10 @@ from pathlib import Path
 import platformdirs
 from qtpy.QtCore import QSettings
 
+from sfumato.gpu.store import LIMITS
+
+_GPU_BUDGET = "gpu/budget_mb"
+
 
 def settings() -> QSettings:
     """Return the settings: an INI file in the user's configuration folder, or in ``SFUMATO_SETTINGS``."""
@@ -15,6 +19,16 @@ def settings() -> QSettings:
     if folder:
         return QSettings(os.path.join(folder, "sfumato.ini"), QSettings.Format.IniFormat)
     return QSettings(QSettings.Format.IniFormat, QSettings.Scope.UserScope, "sfumato", "sfumato")
+
+
+def gpu_budget() -> int | None:
+    """Return the bytes that may be kept on the GPU, by the preference ``gpu/budget_mb`` (MiB); None if there is none.
+
+    What is not a number of MiB that a store takes counts as none.
+    """
+    text = str(settings().value(_GPU_BUDGET, "")).strip()
+    low, high = LIMITS
+    return int(text) << 20 if text.isdecimal() and low <= int(text) <= high else None
 
 
 def data_dir() -> Path:

@@ -23,6 +23,8 @@ from sfumato import GpuError, Scene, SfumatoError
 from sfumato.export.tiles import Guest
 from sfumato.techniques.frame import FULL, Quality
 
+from .settings import gpu_budget
+
 #: Jittered frames that a still picture accumulates.
 STILL_FRAMES = 8
 #: Seconds after which a still picture of so many frames is good enough with fewer.
@@ -243,7 +245,7 @@ class RenderWorker(QObject):
         if self._renderer is None:
             from sfumato import Renderer
 
-            self._renderer = Renderer()
+            self._renderer = Renderer(gpu_budget())
             self.ready.emit(self._renderer.name)
         return self._renderer
 

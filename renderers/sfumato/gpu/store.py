@@ -2,22 +2,89 @@
 
 from __future__ import annotations
 
+import os
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
-from typing import Any, TypeVar
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
+from typing import Any, Protocol, TypeVar
+
+from ..errors import GpuError
 
 T = TypeVar("T")
 
-#: Bytes kept beyond what the current frame needs.
+#: Bytes kept for frames to come, unless the user says otherwise.
 DEFAULT_BUDGET = 2 << 30
+#: Environment variable by which the user says so, in MiB.
+VARIABLE = "SFUMATO_GPU_BUDGET_MB"
+#: Smallest and largest budget in MiB.
+LIMITS = (16, 1 << 20)
+
+
+def user_budget() -> int:
+    """Return the budget in bytes: ``SFUMATO_GPU_BUDGET_MB`` or `DEFAULT_BUDGET`.
+
+    Raises
+    ------
+    GpuError
+        If the variable holds anything but a whole number of MiB within `LIMITS`.
+    """
+    text = os.environ.get(VARIABLE, "").strip()
+    if not text:
+        return DEFAULT_BUDGET
+    if not text.isdecimal() or not LIMITS[0] <= int(text) <= LIMITS[1]:
+        low, high = LIMITS
+        raise GpuError(f"{VARIABLE}={text}", f"a whole number of MiB from {low} to {high} is needed")
+    return int(text) << 20
+
+
+class Guest(Protocol):
+    """Something that keeps GPU objects by itself, but within the store's budget."""
+
+    @property
+    def bytes_in_use(self) -> int:
+        """Bytes of all that it keeps."""
+        ...
 
 
 class Store:
-    """A least-recently-used cache of GPU objects (anything with ``release()``) and of tables on the CPU."""
+    """A least-recently-used cache of GPU objects (anything with ``release()``) and of tables on the CPU.
 
-    def __init__(self, budget: int = DEFAULT_BUDGET) -> None:
-        self.budget = budget
+    What a frame that is being drawn has asked for stays, whatever the budget; all else is freed, the oldest
+    first, as soon as there is more than the budget allows.
+
+    Parameters
+    ----------
+    budget : int, optional
+        Bytes, guests included; `user_budget` if not given.
+    """
+
+    def __init__(self, budget: int | None = None) -> None:
+        self.budget = user_budget() if budget is None else budget
         self._items: OrderedDict[Hashable, tuple[Any, int]] = OrderedDict()
+        self._guests: dict[str, list[Guest]] = {}
+        self._frames = 0
+        self._pinned: set[Hashable] = set()
+
+    @contextmanager
+    def frame(self) -> Iterator[None]:
+        """Keep whatever is asked for within the block until it ends; blocks may overlap."""
+        self._frames += 1
+        try:
+            yield
+        finally:
+            self._frames -= 1
+            if not self._frames:
+                self._pinned.clear()
+
+    def admit(self, name: str, guest: Guest) -> None:
+        """Count what a guest keeps as ours from now on, until `dismiss`."""
+        self._guests.setdefault(name, []).append(guest)
+
+    def dismiss(self, guest: Guest) -> None:
+        """Forget a guest."""
+        for guests in self._guests.values():
+            if guest in guests:
+                guests.remove(guest)
 
     def get(self, key: Hashable, make: Callable[[], T], size: Callable[[T], int] | int = 0) -> T:
         """Return what is kept under a key, or make and keep it.
@@ -31,18 +98,23 @@ class Store:
         size : callable or int
             Its bytes on the GPU.
         """
+        if self._frames:
+            self._pinned.add(key)
         if key in self._items:
             self._items.move_to_end(key)
             return self._items[key][0]  # type: ignore[no-any-return]
-        self._make_room()
+        self.make_room()
         thing = make()
         self._items[key] = (thing, size(thing) if callable(size) else size)
+        self.make_room(key)
         return thing
 
-    def _make_room(self) -> None:
-        while self._items and self.bytes_in_use > self.budget:
-            _, (old, _) = self._items.popitem(last=False)
-            _release(old)
+    def make_room(self, newest: Hashable = None) -> None:
+        """Free the oldest things until the budget is kept, but nothing that a frame needs."""
+        for key in [key for key in self._items if key not in self._pinned and key != newest]:
+            if self.bytes_in_use + self.bytes_of_guests <= self.budget:
+                return
+            _release(self._items.pop(key)[0])
 
     def drop(self, predicate: Callable[[Hashable], bool]) -> None:
         """Free everything whose key satisfies a predicate."""
@@ -51,18 +123,28 @@ class Store:
 
     @property
     def bytes_in_use(self) -> int:
-        """Bytes of all that is kept."""
+        """Bytes of all that is kept here."""
         return sum(size for _, size in self._items.values())
 
+    @property
+    def bytes_of_guests(self) -> int:
+        """Bytes of all that guests keep."""
+        return sum(guest.bytes_in_use for guests in self._guests.values() for guest in guests)
+
     def listing(self) -> list[tuple[str, int]]:
-        """Return what is kept and its bytes, the largest first."""
+        """Return what is kept, guests included, and its bytes, the largest first."""
         rows = [
             (str(key[0] if isinstance(key, tuple) else key), size) for key, (_, size) in self._items.items()
         ]
+        rows += [(name, guest.bytes_in_use) for name, guests in self._guests.items() for guest in guests]
         return sorted(rows, key=lambda row: -row[1])
 
+    def things(self) -> list[tuple[str, Any]]:
+        """Return what is kept here, each with the word that its key begins with."""
+        return [(str(key[0] if isinstance(key, tuple) else key), t) for key, (t, _) in self._items.items()]
+
     def clear(self) -> None:
-        """Free everything."""
+        """Free everything; guests free what is theirs."""
         self.drop(lambda _: True)
 
 
