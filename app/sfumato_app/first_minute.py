@@ -153,7 +153,7 @@ def _load_now() -> float:
 
 
 @contextmanager
-def _own_settings() -> Iterator[None]:
+def own_settings() -> Iterator[None]:
     """Neither use nor change what the user's window remembers."""
     kept = os.environ.get("SFUMATO_SETTINGS")
     with tempfile.TemporaryDirectory() as folder:
@@ -180,7 +180,7 @@ def first_minute(path: Path, name: str = "", screenshot: Path | None = None) -> 
         PNG to write of the settled window.
     """
     make_application()
-    with _own_settings():
+    with own_settings():
         window = MainWindow()
         try:
             return _measure(window, path, name or str(path), screenshot)

@@ -11,6 +11,7 @@ from pathlib import Path
 import sfumato
 
 from . import machine
+from .drag import measure_drag
 from .growth import BASE, FACTORS, QUICK_BASE, QUICK_FACTORS, measure_growth, save_growth_plot
 from .measure import run, warm_up
 from .plot import save_plot
@@ -46,6 +47,8 @@ def main(argv: Sequence[str]) -> int:
     try:
         if options.growth:
             return _growth(options)
+        if options.drag:
+            return _drag(options)
         report = measure(chosen, options.rounds, sys.stderr.isatty())
         print(report.text())
         _write(report, options)
@@ -99,6 +102,16 @@ def _growth(options: argparse.Namespace) -> int:
     return 0
 
 
+def _drag(options: argparse.Namespace) -> int:
+    """Measure the steps of a drag, print them, and write what was asked for."""
+    tell = _tell if sys.stderr.isatty() else _say_nothing
+    drag = measure_drag(Setting(size=options.size), options.technique, tell=tell)
+    print(drag.text())
+    if options.json is not None:
+        options.json.write_text(json.dumps(drag.to_json(), indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="sfumato bench",
@@ -119,6 +132,14 @@ def _parser() -> argparse.ArgumentParser:
         action="store_true",
         help="how the cost of a frame grows with volume, viewport, slices and lights, and how near to the "
         "device's fetch ceiling techniques come",
+    )
+    parser.add_argument(
+        "--drag",
+        action="store_true",
+        help="the whole step of a drag in a real window: slider event to shown picture (needs a display)",
+    )
+    parser.add_argument(
+        "--technique", default="cone", metavar="ID", help="the technique of --drag (default cone)"
     )
     parser.add_argument("--only", metavar="ID,...", help=f"only these rows: {ids}")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all measurements")
