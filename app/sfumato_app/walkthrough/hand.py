@@ -88,6 +88,9 @@ class Hand:
 
     def press(self, key: Qt.Key, keys: Qt.KeyboardModifier = NONE) -> None:
         """Press and release a key on what has the focus."""
+        if not self.window.isActiveWindow():  # without a window manager, it stays so after a dialog
+            self.window.activateWindow()
+            self.wait_until(self.window.isActiveWindow, "active window")
         QTest.keyClick(QApplication.focusWidget() or self.window, key, keys)
 
     def drag(

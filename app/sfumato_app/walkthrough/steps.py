@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from qtpy.QtCore import QPoint, QPointF, Qt, QTimer
+from qtpy.QtCore import QPoint, QPointF, Qt
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import (
     QApplication,
     QColorDialog,
     QDialog,
+    QDialogButtonBox,
     QFileDialog,
     QLineEdit,
     QMenu,
@@ -219,8 +220,6 @@ def _export(hand: Hand) -> None:
     hand.wait_until(lambda: _dialog(ExportDialog) is not None, "export dialog")
     dialog = _dialog(ExportDialog)
     assert isinstance(dialog, ExportDialog)
-    dialog.preset.setFocus()
-    QTest.keyClick(dialog.preset, Qt.Key.Key_Down)
 
 
 def _exporting(hand: Hand) -> None:
@@ -272,7 +271,6 @@ def _accept(hand: Hand, kind: type[QDialog]) -> None:
     assert dialog is not None
     QTest.keyClick(dialog, Qt.Key.Key_Return)
     hand.wait_until(lambda: _dialog(kind) is None, "end of the dialog")
-    hand.window.activateWindow()
 
 
 def _answer_file(hand: Hand, path: Path) -> None:
@@ -284,9 +282,11 @@ def _answer_file(hand: Hand, path: Path) -> None:
     line = dialog.findChild(QLineEdit, "fileNameEdit")
     assert isinstance(line, QLineEdit)
     _type_into(line, str(path.resolve()))
-    QTimer.singleShot(0, lambda: QTest.keyClick(line, Qt.Key.Key_Return))
+    buttons = dialog.findChild(QDialogButtonBox)
+    assert isinstance(buttons, QDialogButtonBox)
+    # Not Enter: the list of completions would take it.
+    hand.click(buttons.button(QDialogButtonBox.StandardButton.Save))
     hand.wait_until(lambda: _dialog(QFileDialog) is None, "end of the file dialog")
-    hand.window.activateWindow()
 
 
 #: In one window on the sample hand.
