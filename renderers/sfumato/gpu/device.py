@@ -16,6 +16,7 @@ from .store import Store
 
 GL_FRAMEBUFFER = 0x8D40
 GL_COLOR_ATTACHMENT0 = 0x8CE0
+GL_COLOR = 0x1800
 GL_SYNC_GPU_COMMANDS_COMPLETE = 0x9117
 GL_SYNC_FLUSH_COMMANDS_BIT = 0x0001
 GL_TIMEOUT_EXPIRED = 0x911B
@@ -59,6 +60,7 @@ class Device:
         self._client_wait = self._function("glClientWaitSync", u32, ptr, u32, u64)
         self._delete_sync = self._function("glDeleteSync", None, ptr)
         self._get_error = self._function("glGetError", u32)
+        self._clear_buffer = self._function("glClearBufferfv", None, u32, i32, ptr)
         self._draw_arrays = self._function("glDrawArrays", None, u32, i32, i32)
 
     def _function(self, name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
@@ -83,6 +85,10 @@ class Device:
     def attach_layer(self, attachment: int, texture: Any, layer: int) -> None:
         """Attach one layer of an array or 3D texture to the bound framebuffer (moderngl cannot)."""
         self._attach_layer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + attachment, texture.glo, 0, layer)
+
+    def clear_attachment(self, attachment: int, value: float) -> None:
+        """Fill one colour attachment of the bound framebuffer with a value (moderngl clears them all)."""
+        self._clear_buffer(GL_COLOR, attachment, (ctypes.c_float * 4)(value, value, value, value))
 
     def draw_triangles(self, array: Any, first: int, count: int) -> None:
         """Draw a range of a vertex array without holding Python's lock: a driver may compile here, for seconds."""

@@ -53,26 +53,35 @@ class Target:
 
 
 class LayerTarget:
-    """Renders into a 2D state texture and, beside it, into one layer of an array texture.
+    """Renders into 2D state textures and, beside them, into one layer of an array or 3D texture.
 
     moderngl cannot attach a layer; a framebuffer is made with a stand-in texture, which `use` replaces.
     """
 
-    def __init__(self, device: Device, state: Any) -> None:
+    def __init__(self, device: Device, *states: Any) -> None:
         self.device = device
-        self._stand_in = device.ctx.texture(state.size, 1, dtype="f2")
-        self.state = state
-        self.fbo = device.ctx.framebuffer([state, self._stand_in])
-        #: The state alone, for copies.
-        self.plain = device.ctx.framebuffer([state])
+        self.states = states
+        self._stand_in = device.ctx.texture(states[0].size, 1, dtype="f2")
+        self.fbo = device.ctx.framebuffer([*states, self._stand_in])
+        #: The states alone, for copies.
+        self.plain = device.ctx.framebuffer(list(states))
 
-    def use(self, array: Any, layer: int) -> None:
-        """Bind, with a layer of an array texture as the second attachment."""
+    @property
+    def state(self) -> Any:
+        """The first state texture."""
+        return self.states[0]
+
+    def use(self, texture: Any, layer: int) -> None:
+        """Bind, with a layer of an array or 3D texture as the last attachment."""
         self.fbo.use()
-        self.device.attach_layer(1, array, layer)
+        self.device.attach_layer(len(self.states), texture, layer)
+
+    def clear_layer(self, value: float) -> None:
+        """Fill the layer that `use` attached."""
+        self.device.clear_attachment(len(self.states), value)
 
     def release(self) -> None:
-        """Free the GPU objects, but not the state texture."""
+        """Free the GPU objects, but not the state textures."""
         self.fbo.release()
         self.plain.release()
         self._stand_in.release()

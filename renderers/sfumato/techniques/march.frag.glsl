@@ -1,7 +1,7 @@
 // The one ray caster: marches the segments first..last-1 of every view ray, front to back, over what earlier passes left.
 //
 // SLICES     samples lie on planes that face the viewer; otherwise at equal distances along each ray
-// SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows
+// SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows, 3: light from lamps' textures
 // LIGHTS     number of lights
 // LITERAL    1: the published occlusion forms, which light a sample by its opacity, not by the slab term
 // SPECULAR   the swept lights have gradient-based highlights
@@ -24,8 +24,16 @@ uniform float u_far;             // mm
 uniform float u_ambient, u_diffuse, u_specular, u_shininess;
 uniform float u_edge;            // gradient (normalised value per mm) at which a highlight has half its strength
 
+#if SHADING == 1 || SHADING == 3
+// Where a view ray meets a plane of the stack, and the value there.
+struct Meeting { vec2 lateral; vec3 t; float value; };
+uniform int u_rear[4];               // 1: behind the subject, its light enters a slab at the back
+#include "slab"
+#endif
 #if SHADING == 1
 #include "occlusion"
+#elif SHADING == 3
+#include "light_volume"
 #endif
 
 layout(location = 0) out vec4 o_color;
@@ -54,10 +62,7 @@ vec3 phong(vec3 gradient, vec3 view, vec3 color, float alpha) {
 }
 #endif
 
-#if SHADING == 1
-// Where a view ray meets a plane of the stack, and the value there.
-struct Meeting { vec2 lateral; vec3 t; float value; };
-
+#if SHADING == 1 || SHADING == 3
 // Colour that a slab of the occlusion methods sends to the eye.
 vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float depth, float secant, vec3 t, vec3 view) {
     vec3 result = vec3(0.0);
@@ -71,16 +76,15 @@ vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float dept
     float strength = length(gradient);
     if (dot(gradient, view) < 0.0) gradient = -gradient;
 #endif
+    float visible[4];
+    visibilities(i, front, back, visible);
     for (int l = 0; l < LIGHTS; ++l) {
-        bool rear = u_rear[l] == 1;
-        float visible = visibility(l, i, rear ? back.lateral : front.lateral, rear ? back.t : front.t, rear ? back.value : front.value);
-        vec3 arrives = u_light_color[l] * visible;
         // Ambient is what no shadow takes away, not even a sample's own; a fully lit surface stays as bright as it is.
-        result += u_light_color[l] * color * mix(visible * returned[l], alpha, u_ambient);
+        result += u_light_color[l] * color * mix(visible[l] * returned[l], alpha, u_ambient);
 #if SPECULAR
         if (strength > 0.0 && dot(gradient, u_towards[l]) > 0.0) {
             float shine = pow(max(dot(gradient / strength, normalize(u_towards[l] + view)), 0.0), u_shininess);
-            result += arrives * (alpha * u_specular * shine * strength / (strength + u_edge));
+            result += u_light_color[l] * (visible[l] * alpha * u_specular * shine * strength / (strength + u_edge));
         }
 #endif
     }
@@ -146,7 +150,7 @@ void main() {
             float depth = mean.a * max(z_next - z, 0.0);        // optical depth along the axis
             float alpha = 1.0 - exp(-depth * secant);
             vec3 color = mean.rgb / max(mean.a, 1e-20);
-#if SHADING == 1
+#if SHADING == 1 || SHADING == 3
             float z_front = z0 + float(i) * dz, z_back = z_front + dz;
             Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, value);
             Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, value_next);

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Hashable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,6 +39,8 @@ class Material:
     tables: TransferTables
     empty: EmptySpace
     clipped: bool
+    #: Equal for materials that stop light alike, whatever their colours.
+    opacity_key: Hashable
 
 
 def prepare_material(frame: Frame) -> Material:
@@ -54,7 +56,16 @@ def prepare_material(frame: Frame) -> Material:
         lambda: map_empty_space(device, volume, occupied_blocks(texture, tables.visible)),
         lambda e: e.size,
     )
-    return Material(texture, tables, empty, any(plane.enabled for plane in frame.scene.clip))
+    return Material(
+        texture, tables, empty, any(plane.enabled for plane in frame.scene.clip), _opacity_key(frame)
+    )
+
+
+def _opacity_key(frame: Frame) -> Hashable:
+    transfer = frame.transfer
+    if transfer.regions:
+        return frame.volume.key, transfer
+    return frame.volume.key, transfer.unit_distance, tuple((p.value, p.opacity) for p in transfer.points)
 
 
 def material_defines(material: Material) -> tuple[tuple[str, int], ...]:
@@ -92,8 +103,20 @@ def visible_corners(frame: Frame, material: Material) -> np.ndarray | None:
     return frame.volume.corners(tuple(low), tuple(high)) if (low < high).all() else None
 
 
+def blocks_along(view: View, frame: Frame, material: Material) -> tuple[np.ndarray, np.ndarray]:
+    """Return centres and half extents, along a view's axes in mm, of the blocks in which something is visible."""
+    empty, scene = material.empty, frame.scene
+    shown = (
+        (empty.centers + empty.half_block >= scene.crop.low)
+        & (empty.centers - empty.half_block <= scene.crop.high)
+    ).all(axis=1)
+    matrix = frame.volume.world_from_texture
+    centers = view.coordinates(empty.centers[shown] @ matrix[:3, :3].T + matrix[:3, 3])
+    return centers, np.abs(view.axes @ matrix[:3, :3]) @ empty.half_block
+
+
 #: How the march shader shades a sample.
-UNLIT, SWEPT, PHONG = 0, 1, 2
+UNLIT, SWEPT, PHONG, VOLUMES = 0, 1, 2, 3
 
 
 @dataclass(frozen=True)

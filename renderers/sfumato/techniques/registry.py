@@ -76,6 +76,7 @@ class Technique:
 
 #: One line a folder; the order is that of menus and tables.
 FOLDERS = (
+    "cone",
     "multidirectional",
     "raycast",
     "slices",

@@ -19,12 +19,10 @@ from ..gpu import Device, LayerTarget, Program, ShaderSource
 from ..gpu.program import PACKAGE
 from .footprint import Stencil, effective_secant, kernel_moments, stencil_for
 from .frame import Frame
-from .marcher import Material, bind_material, material_defines
+from .marcher import Material, bind_material, blocks_along, material_defines
 from .stack import PAD, Lattice, Stack
+from .tile_texture import TileTexture
 from .tiles import TILE, TileLists, list_tiles
-
-#: Width of the texture that holds the tiles' indices.
-TILES_PER_ROW = 1024
 
 #: Most slabs that one filtering serves, and its largest variance in texels squared.
 MAX_RHYTHM = 4
@@ -86,7 +84,7 @@ def lamps_for(
     reach = min(widest, max((abs(c) for stencil in stencils for tap in stencil.taps for c in tap), default=0))
     # A slab's columns also begin texels away from those of the slab before: steep lights move by several.
     reach += min(widest, math.ceil(max((m.mean for m in moments), default=0.0) * stack.step / texel))
-    centers, half = _blocks(frame, material, stack)
+    centers, half = blocks_along(stack.view, frame, material)
     lamps = []
     for (tilt, rotation), aperture, m, stencil, every in zip(
         angles, apertures, moments, stencils, rhythm, strict=True
@@ -128,18 +126,6 @@ def _stencil(along: float, across: float, rotation: float) -> Stencil:
     )
 
 
-def _blocks(frame: Frame, material: Material, stack: Stack) -> tuple[np.ndarray, np.ndarray]:
-    """Return centres and half extents, along the view's axes in mm, of the blocks in which something is visible."""
-    empty, scene = material.empty, frame.scene
-    shown = (
-        (empty.centers + empty.half_block >= scene.crop.low)
-        & (empty.centers - empty.half_block <= scene.crop.high)
-    ).all(axis=1)
-    matrix = frame.volume.world_from_texture
-    centers = stack.view.coordinates(empty.centers[shown] @ matrix[:3, :3].T + matrix[:3, 3])
-    return centers, np.abs(stack.view.axes @ matrix[:3, :3]) @ empty.half_block
-
-
 class Sweeper:
     """Carries one light's occlusion from slab to slab, through two states that take turns."""
 
@@ -148,7 +134,7 @@ class Sweeper:
         self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
         self._targets: list[LayerTarget] = []
         self._pairs: list[tuple[Program, Program]] = []
-        self._tiles: Any = None
+        self._tiles = TileTexture(device)
         self._clear = 1.0
 
     def prepare(self, frame: Frame, material: Material, lamp: Lamp) -> None:
@@ -160,8 +146,8 @@ class Sweeper:
             self._targets = [LayerTarget(self.device, new_state(self.device, size)) for _ in range(2)]
         self._lamp = lamp
         self._clear = 0.0 if form == FORMS["additive"] else 1.0
-        self._to_texture = _texture_from_view(frame, lamp.lattice.stack)
-        self._upload_tiles(lamp.tiles)
+        self._to_texture = texture_from_view(frame, lamp.lattice.stack)
+        self._tiles.upload(lamp.tiles)
         border = lamp.lattice.border - PAD
         taps = np.clip(np.array(lamp.stencil.taps, dtype=np.int32), -border, border)
         self._farthest = border - int(np.abs(taps).max())
@@ -189,16 +175,6 @@ class Sweeper:
             vertex = (PACKAGE / "shaders/tiles.vert.glsl").read_text(encoding="utf-8")
             self._programs[defines] = Program(self.device, source, vertex)
         return self._programs[defines]
-
-    def _upload_tiles(self, lists: TileLists) -> None:
-        """Put the lists into a texture as wide as textures may be everywhere."""
-        if self._tiles is not None:
-            self._tiles.release()
-        rows = max(1, -(-len(lists.tiles) // TILES_PER_ROW))
-        data = np.zeros((rows * TILES_PER_ROW, 4), dtype=np.int16)
-        data[: len(lists.tiles), :3] = lists.tiles
-        self._tiles = self.device.ctx.texture((TILES_PER_ROW, rows), 4, data, dtype="i2")
-        self._tiles.filter = (moderngl.NEAREST, moderngl.NEAREST)
 
     def load(self, kept: Any) -> None:
         """Go on from a state that `keep` kept."""
@@ -231,20 +207,14 @@ class Sweeper:
         for program, (first, count) in zip(pair, (hollow, full), strict=True):
             if count == 0:
                 continue
-            program.bind(u_state=source.state, u_tiles=self._tiles)
+            program.bind(u_state=source.state, u_tiles=self._tiles.texture)
             program.set(u_shift=shift, u_base=tuple(base.tolist()), u_tiles_first=first)
             if program is pair[1]:
                 program.set(
-                    u_enter=self._affine(lattice.positions(enter, base)),
-                    u_leave=self._affine(lattice.positions(leave, base)),
+                    u_enter=affine(self._to_texture, lattice.positions(enter, base)),
+                    u_leave=affine(self._to_texture, lattice.positions(leave, base)),
                 )
             program.draw_rects(count)
-
-    def _affine(self, positions: np.ndarray) -> tuple[float, ...]:
-        """Return the 3 x 3 from texels to texture coordinates, column by column."""
-        matrix = self._to_texture[:3, :3] @ positions
-        matrix[:, 2] += self._to_texture[:3, 3]
-        return tuple(matrix.T.ravel().tolist())
 
     def release(self) -> None:
         """Free programs and states."""
@@ -252,8 +222,7 @@ class Sweeper:
             program.release()
         self._programs.clear()
         self._release_targets()
-        if self._tiles is not None:
-            self._tiles.release()
+        self._tiles.release()
 
     def _release_targets(self) -> None:
         for target in self._targets:
@@ -269,7 +238,14 @@ def new_state(device: Device, size: tuple[int, int]) -> Any:
     return state
 
 
-def _texture_from_view(frame: Frame, stack: Stack) -> np.ndarray:
+def affine(to_texture: np.ndarray, positions: np.ndarray) -> tuple[float, ...]:
+    """Return the 3 x 3 from texels on a plane to texture coordinates, column by column."""
+    matrix = to_texture[:3, :3] @ positions
+    matrix[:, 2] += to_texture[:3, 3]
+    return tuple(matrix.T.ravel().tolist())
+
+
+def texture_from_view(frame: Frame, stack: Stack) -> np.ndarray:
     """Return the affine 4 x 4 from (lateral x, lateral y, depth) in mm to texture coordinates."""
     to_world = np.eye(4)
     to_world[:3, :3] = stack.view.axes.T

@@ -77,8 +77,37 @@ def list_tiles(
     active = dirty & needed
     if lattice.rear:
         active = active[::-1]
+    return _lists(full, active & ~full, low)
+
+
+def list_cone_tiles(
+    lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, slope: float, ahead: int
+) -> TileLists:
+    """Sort the tiles of a lattice through which light spreads as a cone: by `slope` texels a slab to each side."""
+    groups = lattice.stack.count // GROUP + 1
+    full, low = _full_tiles(lattice, centers, half_sizes, groups, ahead)
+    near = maximum_filter(full, size=(1, 3, 3))
+    active = _widening(near, slope) & _widening(near[::-1], slope)[::-1]
+    return _lists(full, active & ~full, low)
+
+
+def _widening(tiles: np.ndarray, slope: float) -> np.ndarray:
+    """Return the tiles that lie behind any of these, in a cone that widens by `slope` texels a slab."""
+    behind, reached = tiles.copy(), 0.0
+    for group in range(1, len(tiles)):
+        reached += slope * GROUP
+        step = int(reached // TILE)
+        reached -= step * TILE
+        before = maximum_filter(behind[group - 1], size=2 * step + 1) if step else behind[group - 1]
+        behind[group] |= before
+    return behind
+
+
+def _lists(full: np.ndarray, hollow: np.ndarray, low: tuple[int, int]) -> TileLists:
+    """Write down the runs of full and of hollow tiles, shape (groups, y, x) each."""
+    groups = len(full)
     rows, spans, offset = [], [], 0
-    for kind in (full, active & ~full):
+    for kind in (full, hollow):
         runs, groups_of_runs = _runs(kind)
         counts = np.bincount(groups_of_runs, minlength=groups)
         spans.append(np.stack([offset + np.cumsum(counts) - counts, counts], axis=1))

@@ -11,9 +11,6 @@ uniform ivec2 u_shear[4];            // columns' shift per plane, 1/32768 texel,
 uniform vec2 u_lattice_origin[4];    // lateral position (mm) of texel coordinate 0 at plane 0
 uniform float u_texel;               // mm
 uniform vec2 u_lattice_size;         // texels
-uniform int u_rear[4];               // 1: behind the subject, its light enters at the slab's back
-uniform sampler2D u_slab_term;       // the light that a slab returns, one light a channel (methods.md, 3a)
-uniform float u_slab_secant_max;     // secant at the table's upper edge
 
 #if NEAR > 0
 // Light that what stands within NEAR slabs of t, a point where the volume has this value, lets through to it.
@@ -50,9 +47,10 @@ float visibility(int l, int i, vec2 lateral, vec3 t, float value) {
     return near * textureLod(u_layers, vec3(texel / u_lattice_size, float(l * u_layers_per_light + layer)), 0.0).r;
 }
 
-// Light returned by a slab of optical depth tau * thickness, per light; 1 for a solid one that faces the viewer.
-vec4 slab_term(float depth, float secant) {
-    vec2 at = vec2(1.0 - exp(-depth), u_slab_secant_max > 1.0 ? (secant - 1.0) / (u_slab_secant_max - 1.0) : 0.0);
-    vec2 size = vec2(textureSize(u_slab_term, 0));
-    return textureLod(u_slab_term, (at * (size - 1.0) + 0.5) / size, 0.0);
+// Visibility of all lights at slab i, for what a view ray meets at its two planes.
+void visibilities(int i, Meeting front, Meeting back, out float visible[4]) {
+    for (int l = 0; l < LIGHTS; ++l) {
+        bool rear = u_rear[l] == 1;
+        visible[l] = visibility(l, i, rear ? back.lateral : front.lateral, rear ? back.t : front.t, rear ? back.value : front.value);
+    }
 }

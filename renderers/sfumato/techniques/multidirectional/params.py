@@ -10,33 +10,9 @@ from ...scene.scene import TechniqueParams
 
 
 @dataclass(frozen=True)
-class OcclusionParams(TechniqueParams):
-    """What the occlusion sweeps share."""
+class ShadowParams(TechniqueParams):
+    """What all techniques that sweep light share."""
 
-    occlusion: Annotated[
-        str,
-        Param(
-            "How opacity accumulates towards the light: ours, or one of the two published forms",
-            label="Occlusion",
-            choices=("extinction", "additive", "multiplicative"),
-            source="Soltesova2010, Eq. 13-14; Schott2009",
-            stale="program",
-            tab="light",
-            level="more",
-        ),
-    ] = "extinction"
-    falloff: Annotated[
-        str,
-        Param(
-            "Weight across the footprint",
-            label="Fall-off",
-            choices=("linear", "gaussian"),
-            source="Soltesova2010, Eq. 10-11, Fig. 7",
-            stale="kernel",
-            tab="light",
-            level="more",
-        ),
-    ] = "linear"
     specular: Annotated[
         float,
         Param(
@@ -78,6 +54,36 @@ class OcclusionParams(TechniqueParams):
             level="more",
         ),
     ] = 1.0
+
+
+@dataclass(frozen=True)
+class OcclusionParams(ShadowParams):
+    """What the published occlusion sweeps share."""
+
+    occlusion: Annotated[
+        str,
+        Param(
+            "How opacity accumulates towards the light: ours, or one of the two published forms",
+            label="Occlusion",
+            choices=("extinction", "additive", "multiplicative"),
+            source="Soltesova2010, Eq. 13-14; Schott2009",
+            stale="program",
+            tab="light",
+            level="more",
+        ),
+    ] = "extinction"
+    falloff: Annotated[
+        str,
+        Param(
+            "Weight across the footprint",
+            label="Fall-off",
+            choices=("linear", "gaussian"),
+            source="Soltesova2010, Eq. 10-11, Fig. 7",
+            stale="kernel",
+            tab="light",
+            level="more",
+        ),
+    ] = "linear"
 
 
 @dataclass(frozen=True)

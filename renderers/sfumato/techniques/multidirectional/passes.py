@@ -17,7 +17,6 @@ import numpy as np
 
 from ...gpu import Device, Program
 from ...scene import nearest_possible_tilt
-from ..footprint import slab_table
 from ..frame import Frame
 from ..marcher import (
     SWEPT,
@@ -29,12 +28,12 @@ from ..marcher import (
     is_empty,
     light_uniforms,
     lights_towards,
-    max_secant,
     pixel_box,
     prepare_material,
     set_view,
     visible_corners,
 )
+from ..slab_texture import SlabTexture
 from ..stack import Stack, View
 from ..sweep import MAX_NEAR, Lamp, Sweeper, lamps_for, near_slabs
 
@@ -74,7 +73,7 @@ class OcclusionPainter:
         self.marcher = Marcher(device)
         self._sweepers: list[Sweeper] = []
         self._layers: Any = None
-        self._slab_term: tuple[Any, Any] | None = None
+        self._slab_term = SlabTexture(device)
 
     def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
@@ -99,9 +98,8 @@ class OcclusionPainter:
             for number, batch in enumerate(batches):
                 for _ in self._sweep_batch(plan, batch):
                     yield done / total
-                # The sweep's textures took the units: bind the march's again.
-                bind_material(program, material, frame)
-                self._bind_layers(program)
+                if self._layers is not None:
+                    program.bind(u_layers=self._layers)
                 for _ in self.marcher.march(frame, program, batch, box, number == 0):
                     yield done / total
                 done += batch[1] - batch[0]
@@ -152,10 +150,7 @@ class OcclusionPainter:
         )
         program.set(**light_uniforms(frame, towards), **_lattice_uniforms(frame, plan))
         apertures = [light.aperture for light in frame.scene.active_lights]
-        cones = tuple((tilt, aperture) for (tilt, _), aperture in zip(plan.angles, apertures, strict=True))
-        secant = max_secant(frame)
-        program.set(u_slab_secant_max=secant)
-        program.bind(u_slab_term=self._slab_texture(cones, secant))
+        self._slab_term.bind(program, frame, [tilt for tilt, _ in plan.angles], apertures)
         return program
 
     def _make_layers(self, lamps: tuple[Lamp, ...]) -> None:
@@ -168,22 +163,6 @@ class OcclusionPainter:
                 self._layers = self.device.ctx.texture_array(wanted, 1, dtype="nu2")
             self._layers.filter = (moderngl.LINEAR, moderngl.LINEAR)
             self._layers.repeat_x = self._layers.repeat_y = False
-
-    def _slab_texture(self, cones: tuple[tuple[float, float], ...], secant: float) -> Any:
-        key = (cones, secant)
-        if self._slab_term is None or self._slab_term[0] != key:
-            table = slab_table(cones, secant)
-            texture = self.device.ctx.texture((table.shape[1], table.shape[0]), 4, table, dtype="f4")
-            texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-            texture.repeat_x = texture.repeat_y = False
-            if self._slab_term is not None:
-                self._slab_term[1].release()
-            self._slab_term = (key, texture)
-        return self._slab_term[1]
-
-    def _bind_layers(self, program: Program) -> None:
-        if self._layers is not None and self._slab_term is not None:
-            program.bind(u_layers=self._layers, u_slab_term=self._slab_term[1])
 
     def _sweep_rear(self, plan: Plan) -> Iterator[int]:
         """Take the lights from behind through all slabs, keeping their state at the batches' far edges."""
@@ -223,9 +202,9 @@ class OcclusionPainter:
         self.marcher.release()
         for sweeper in self._sweepers:
             sweeper.release()
-        for texture in (self._layers, self._slab_term[1] if self._slab_term else None):
-            if texture is not None:
-                texture.release()
+        self._slab_term.release()
+        if self._layers is not None:
+            self._layers.release()
 
 
 def _layer(light: int, slab: int) -> int:

@@ -23,7 +23,9 @@ class ReferencePainter:
         """Draw into the frame's target, yielding progress (0 to 1) after each batch of rows."""
         width, height = frame.size
         picture = np.zeros((height, width, 4))
-        scene = frame.scene.with_(camera=frame.part_camera, step=min(16.0, frame.scene.step * frame.quality.step))
+        scene = frame.scene.with_(
+            camera=frame.part_camera, step=min(16.0, frame.scene.step * frame.quality.step)
+        )
         params = frame.params
         yield from cone.passes(
             scene, frame.size, picture, params.directions, params.light_step * frame.quality.step, frame.index

@@ -1,0 +1,85 @@
+"""Light volumes that are kept, so that what does not move need not be swept again."""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Hashable
+from typing import Any
+
+from ..gpu import Store
+
+#: Bytes of textures that are kept; the lamps of the present frame are kept in any case.
+BUDGET = 512 << 20
+BYTES_PER_TEXEL = 4
+#: Part of a device's whole budget that light volumes may take.
+SHARE = 0.25
+
+
+class LightCache:
+    """Least recently used textures by what was swept into them; old ones are swept over.
+
+    Parameters
+    ----------
+    make : callable
+        Makes a texture of a size.
+    budget : int
+        Bytes.
+    store : Store, optional
+        Whose budget these bytes are taken from, `SHARE` of it at most.
+    """
+
+    def __init__(self, make: Any, budget: int = BUDGET, store: Store | None = None) -> None:
+        self._make = make
+        self._own_budget = budget
+        self._store = store
+        self._kept: OrderedDict[Hashable, Any] = OrderedDict()
+        if store is not None:
+            store.admit("light volumes", self)
+
+    @property
+    def budget(self) -> int:
+        """Bytes of textures that may be kept."""
+        return (
+            self._own_budget
+            if self._store is None
+            else min(self._own_budget, int(self._store.budget * SHARE))
+        )
+
+    def find(self, key: Hashable) -> Any:
+        """Return the texture that holds a sweep, or None."""
+        if key in self._kept:
+            self._kept.move_to_end(key)
+        return self._kept.get(key)
+
+    def take(self, size: tuple[int, int, int], in_use: int) -> Any:
+        """Return a texture of a size to sweep into; the `in_use` newest of those kept are left alone.
+
+        It is not kept before `keep` says that the sweep is complete.
+        """
+        wanted = math.prod(size) * BYTES_PER_TEXEL
+        while len(self._kept) > in_use and self.bytes_in_use + wanted > self.budget:
+            _, old = self._kept.popitem(last=False)
+            if old.size == size:
+                return old
+            old.release()
+        return self._make(size)
+
+    def keep(self, key: Hashable, texture: Any) -> None:
+        """Keep a texture whose sweep is complete."""
+        self._kept[key] = texture
+        if self._store is not None:
+            self._store.make_room()
+
+    @property
+    def bytes_in_use(self) -> int:
+        """Bytes of all that is kept."""
+        return sum(math.prod(texture.size) * BYTES_PER_TEXEL for texture in self._kept.values())
+
+    def release(self) -> None:
+        """Free everything."""
+        if self._store is not None:
+            self._store.dismiss(self)
+        for texture in self._kept.values():
+            texture.release()
+        self._kept.clear()
