@@ -274,17 +274,16 @@ def _accept(hand: Hand, kind: type[QDialog]) -> None:
 
 
 def _answer_file(hand: Hand, path: Path) -> None:
-    """Type a path into the file dialog; a question whether to replace the file is answered by yes."""
+    """Name a file in the file dialog and press Save."""
     hand.wait_until(lambda: _dialog(QFileDialog) is not None, "file dialog")
     dialog = _dialog(QFileDialog)
     assert dialog is not None
     path.unlink(missing_ok=True)
-    line = dialog.findChild(QLineEdit, "fileNameEdit")
-    assert isinstance(line, QLineEdit)
-    _type_into(line, str(path.resolve()))
+    assert isinstance(dialog, QFileDialog)
+    # Not typed: the list of completions would take the click.
+    dialog.selectFile(str(path.resolve()))
     buttons = dialog.findChild(QDialogButtonBox)
     assert isinstance(buttons, QDialogButtonBox)
-    # Not Enter: the list of completions would take it.
     hand.click(buttons.button(QDialogButtonBox.StandardButton.Save))
     hand.wait_until(lambda: _dialog(QFileDialog) is None, "end of the file dialog")
 
