@@ -25,12 +25,21 @@ class LightCache:
         Makes a texture of a size.
     budget : int
         Bytes.
+    bytes_per_texel : int
+        Of its textures.
     store : Store, optional
         Whose budget these bytes are taken from, `SHARE` of it at most.
     """
 
-    def __init__(self, make: Any, budget: int = BUDGET, store: Store | None = None) -> None:
+    def __init__(
+        self,
+        make: Any,
+        budget: int = BUDGET,
+        store: Store | None = None,
+        bytes_per_texel: int = BYTES_PER_TEXEL,
+    ) -> None:
         self._make = make
+        self._bytes = bytes_per_texel
         self._own_budget = budget
         self._store = store
         self._kept: OrderedDict[Hashable, Any] = OrderedDict()
@@ -57,7 +66,7 @@ class LightCache:
 
         It is not kept before `keep` says that the sweep is complete.
         """
-        wanted = math.prod(size) * BYTES_PER_TEXEL
+        wanted = math.prod(size) * self._bytes
         while len(self._kept) > in_use and self.bytes_in_use + wanted > self.budget:
             _, old = self._kept.popitem(last=False)
             if old.size == size:
@@ -74,7 +83,7 @@ class LightCache:
     @property
     def bytes_in_use(self) -> int:
         """Bytes of all that is kept."""
-        return sum(math.prod(texture.size) * BYTES_PER_TEXEL for texture in self._kept.values())
+        return sum(math.prod(texture.size) * self._bytes for texture in self._kept.values())
 
     def release(self) -> None:
         """Free everything."""

@@ -1,14 +1,16 @@
 """The passes of the occlusion methods: sweep each light through a batch of slabs, then march the batch.
 
-Batches keep memory bounded whatever the number of slabs, and pieces of GPU work short. A light from behind
-travels against the eye's order: it is swept once from back to front, keeping its state at the edges of the
-batches, and each batch is swept again from there when its turn comes.
+Where there is room the whole stack is one batch, whose layers are the light prepass: they are kept, and as
+long as lamps, view and opacity stay the same only the ray caster runs. Else batches keep memory bounded
+whatever the number of slabs. A light from behind travels against the eye's order: with several batches it is
+swept once from back to front, keeping its state at the edges of the batches, and each batch is swept again
+from there when its turn comes.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Hashable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,6 +20,7 @@ import numpy as np
 from ...gpu import Device, Program
 from ...scene import nearest_possible_tilt
 from ..frame import Frame
+from ..light_cache import LightCache
 from ..marcher import (
     SWEPT,
     Marcher,
@@ -41,6 +44,9 @@ from ..sweep import MAX_NEAR, Lamp, Sweeper, lamps_for, near_slabs
 BATCH = 64
 #: Layers of a light: slab i's is layer i mod LAYERS, so that a batch can still read the slabs just before it.
 LAYERS = BATCH + MAX_NEAR
+#: Most bytes of the layers of a stack that is one batch.
+WHOLE_BYTES = 192 << 20
+BYTES_PER_TEXEL = 2
 #: Sweep passes between two looks at whether a newer scene is there.
 PASSES_PER_PIECE = 16
 
@@ -56,12 +62,36 @@ class Plan:
     angles: tuple[tuple[float, float], ...]
     box: tuple[int, int, int, int]
     near: int
+    key: Hashable
+    #: Layers of a light, and whether they hold the whole stack.
+    per_light: int = LAYERS
+    whole: bool = False
     kept: dict[tuple[int, int], Any] = field(default_factory=dict)
 
     def batches(self) -> list[tuple[int, int]]:
         """Return the ranges of slabs, front to back."""
         first, last = self.slabs
-        return [(k, min(k + BATCH, last)) for k in range(first, last, BATCH)]
+        size = last - first if self.whole else BATCH
+        return [(k, min(k + size, last)) for k in range(first, last, size)]
+
+    @property
+    def layers_size(self) -> tuple[int, int, int]:
+        """Size of the texture of all lights' layers."""
+        width, height = self.lamps[0].lattice.size
+        return width, height, self.per_light * len(self.lamps)
+
+    def layer(self, light: int, slab: int) -> int:
+        """Return the layer that holds what of a light reaches a slab."""
+        return light * self.per_light + slab % self.per_light
+
+    def fit(self, device: Device) -> None:
+        """Make the stack one batch if its layers fit."""
+        self.per_light, self.whole = self.slabs[1], True
+        if (
+            self.layers_size[2] > device.max_layers
+            or math.prod(self.layers_size) * BYTES_PER_TEXEL > WHOLE_BYTES
+        ):
+            self.per_light, self.whole = LAYERS, False
 
 
 class OcclusionPainter:
@@ -73,6 +103,7 @@ class OcclusionPainter:
         self.marcher = Marcher(device)
         self._sweepers: list[Sweeper] = []
         self._layers: Any = None
+        self._cache = LightCache(self._new_layers, bytes_per_texel=BYTES_PER_TEXEL, store=device.store)
         self._slab_term = SlabTexture(device)
 
     def paint(self, frame: Frame) -> Generator[float, None, None]:
@@ -86,30 +117,64 @@ class OcclusionPainter:
             return
         plan = self._plan(frame, material, corners, box)
         program = self._prepare(frame, plan)
-        batches = plan.batches()
+        self.marcher.begin(frame)
+        if plan.whole:
+            layers = yield from self._whole(frame, plan)
+            program.bind(u_layers=layers)
+            for done in self.marcher.march(frame, program, plan.slabs, box, True):
+                yield 0.5 + 0.5 * done
+        else:
+            yield from self._in_batches(frame, plan, program)
+        self.marcher.finish(frame)
+        yield 1.0
+
+    def _whole(self, frame: Frame, plan: Plan) -> Generator[float, None, Any]:
+        """Return the layers of the whole stack, sweeping the lights unless they are kept."""
+        kept = self._cache.find(plan.key)
+        if kept is not None:
+            return kept
+        self._set_up_sweeps(frame, plan)
+        self._layers = self._cache.take(plan.layers_size, in_use=0)
+        complete = False
+        try:
+            for done in self._sweep_batch(plan, plan.slabs):
+                yield 0.5 * done
+            complete = True
+        finally:
+            layers, self._layers = self._layers, None
+            if not complete:
+                layers.release()
+        self._cache.keep(plan.key, layers)
+        return layers
+
+    def _in_batches(self, frame: Frame, plan: Plan, program: Program) -> Iterator[float]:
+        """Sweep and march batch by batch."""
         rear = any(lamp.lattice.rear for lamp in plan.lamps)
         total = (plan.slabs[1] - plan.slabs[0]) * (2 if rear else 1)
         done = 0
+        if plan.lamps:
+            self._set_up_sweeps(frame, plan)
+            self._layers = self._new_layers(plan.layers_size)
         try:
             if rear:
                 for done in self._sweep_rear(plan):
                     yield done / total
-            self.marcher.begin(frame)
-            for number, batch in enumerate(batches):
+            for number, batch in enumerate(plan.batches()):
                 for _ in self._sweep_batch(plan, batch):
                     yield done / total
                 if self._layers is not None:
                     program.bind(u_layers=self._layers)
-                for _ in self.marcher.march(frame, program, batch, box, number == 0):
+                for _ in self.marcher.march(frame, program, batch, plan.box, number == 0):
                     yield done / total
                 done += batch[1] - batch[0]
-            self.marcher.finish(frame)
         finally:
             for kept in plan.kept.values():
                 for texture in kept.color_attachments:
                     texture.release()
                 kept.release()
-        yield 1.0
+            if self._layers is not None:
+                self._layers.release()
+            self._layers = None
 
     def _plan(
         self, frame: Frame, material: Material, corners: np.ndarray, box: tuple[int, int, int, int]
@@ -124,9 +189,12 @@ class OcclusionPainter:
             for light, (tilt, rotation) in zip(lights, frame.scene.light_angles(), strict=True)
         )
         lamps = lamps_for(frame, material, stack, angles, [light.aperture for light in lights])
-        return Plan(
-            material, stack, stack.slabs_of(depths.min(), depths.max()), lamps, angles, box, near_slabs(frame)
-        )
+        slabs, near = stack.slabs_of(depths.min(), depths.max()), near_slabs(frame)
+        key = _key(frame, material, stack, lamps, (slabs, near))
+        plan = Plan(material, stack, slabs, lamps, angles, box, near, key)
+        if lamps:
+            plan.fit(self.device)
+        return plan
 
     def _prepare(self, frame: Frame, plan: Plan) -> Program:
         """Set up the march program, the sweepers and the textures."""
@@ -140,11 +208,6 @@ class OcclusionPainter:
         program.set(u_ambient=params.ambient, u_specular=params.specular, u_shininess=params.shininess)
         if not lamps:
             return program
-        self._make_layers(lamps)
-        while len(self._sweepers) < len(lamps):
-            self._sweepers.append(Sweeper(self.device))
-        for sweeper, lamp in zip(self._sweepers, lamps, strict=False):
-            sweeper.prepare(frame, plan.material, lamp)
         towards = (
             [np.asarray(frame.camera.basis().back)] * len(lamps) if self.headlamp else lights_towards(frame)
         )
@@ -153,16 +216,18 @@ class OcclusionPainter:
         self._slab_term.bind(program, frame, [tilt for tilt, _ in plan.angles], apertures)
         return program
 
-    def _make_layers(self, lamps: tuple[Lamp, ...]) -> None:
-        width, height = lamps[0].lattice.size
-        wanted = (width, height, LAYERS * len(lamps))
-        if self._layers is None or self._layers.size != wanted:
-            if self._layers is not None:
-                self._layers.release()
-            with self.device.checked(f"{math.prod(wanted) * 2 >> 20} MiB for the light's layers"):
-                self._layers = self.device.ctx.texture_array(wanted, 1, dtype="nu2")
-            self._layers.filter = (moderngl.LINEAR, moderngl.LINEAR)
-            self._layers.repeat_x = self._layers.repeat_y = False
+    def _set_up_sweeps(self, frame: Frame, plan: Plan) -> None:
+        while len(self._sweepers) < len(plan.lamps):
+            self._sweepers.append(Sweeper(self.device))
+        for sweeper, lamp in zip(self._sweepers, plan.lamps, strict=False):
+            sweeper.prepare(frame, plan.material, lamp)
+
+    def _new_layers(self, size: tuple[int, int, int]) -> Any:
+        with self.device.checked(f"{math.prod(size) * BYTES_PER_TEXEL >> 20} MiB for the light's layers"):
+            layers = self.device.ctx.texture_array(size, 1, dtype="nu2")
+        layers.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        layers.repeat_x = layers.repeat_y = False
+        return layers
 
     def _sweep_rear(self, plan: Plan) -> Iterator[int]:
         """Take the lights from behind through all slabs, keeping their state at the batches' far edges."""
@@ -173,7 +238,7 @@ class OcclusionPainter:
                 if lamp.lattice.rear:
                     if index in starts:
                         plan.kept[number, index] = sweeper.keep()
-                    sweeper.slab(index, self._layers, _layer(number, index))
+                    sweeper.slab(index, self._layers, plan.layer(number, index))
             if index % PASSES_PER_PIECE == 0:
                 self.device.wait()
                 yield last - index
@@ -182,20 +247,22 @@ class OcclusionPainter:
         """Return the slab at which a batch is begun from behind: the ray caster reads a few beyond its end."""
         return min(batch[1] + plan.near, plan.slabs[1]) - 1
 
-    def _sweep_batch(self, plan: Plan, batch: tuple[int, int]) -> Iterator[None]:
-        """Take every light through the slabs of a batch, in its own order."""
+    def _sweep_batch(self, plan: Plan, batch: tuple[int, int]) -> Iterator[float]:
+        """Take every light through the slabs of a batch, in its own order; yields the share done."""
         first, last = batch
+        total = (last - first) * max(1, len(plan.lamps))
         for number, (sweeper, lamp) in enumerate(zip(self._sweepers, plan.lamps, strict=False)):
             order = range(first, last)
             if lamp.lattice.rear:
                 start = self._rear_start(plan, batch)
-                sweeper.load(plan.kept[number, start])
+                if not plan.whole:
+                    sweeper.load(plan.kept[number, start])
                 order = range(start, first - 1, -1)
             for count, index in enumerate(order, 1):
-                sweeper.slab(index, self._layers, _layer(number, index))
+                sweeper.slab(index, self._layers, plan.layer(number, index))
                 if count % PASSES_PER_PIECE == 0:
                     self.device.wait()
-                    yield
+                    yield (number * (last - first) + count) / total
 
     def release(self) -> None:
         """Free the GPU objects."""
@@ -203,13 +270,21 @@ class OcclusionPainter:
         for sweeper in self._sweepers:
             sweeper.release()
         self._slab_term.release()
-        if self._layers is not None:
-            self._layers.release()
+        self._cache.release()
 
 
-def _layer(light: int, slab: int) -> int:
-    """Return the layer that holds what of a light reaches a slab."""
-    return light * LAYERS + slab % LAYERS
+def _key(frame: Frame, material: Material, stack: Stack, lamps: tuple[Lamp, ...], more: Hashable) -> Hashable:
+    """Return what the lights' layers depend on."""
+    view = np.concatenate([stack.view.eye, stack.view.axes.ravel(), stack.low, stack.high])
+    grids = tuple(
+        (lamp.lattice.shear, lamp.lattice.offset, lamp.lattice.size, lamp.lattice.texel, lamp.lattice.rear,
+         lamp.stencil, lamp.path, lamp.every)
+        for lamp in lamps
+    )  # fmt: skip
+    return (
+        material.opacity_key, frame.scene.clip, frame.scene.crop, frame.params.occlusion,
+        np.round(view, 6).tobytes(), round(stack.z0, 6), stack.step, stack.count, grids, more,
+    )  # fmt: skip
 
 
 def _lattice_uniforms(frame: Frame, plan: Plan) -> dict[str, Any]:
@@ -227,7 +302,7 @@ def _lattice_uniforms(frame: Frame, plan: Plan) -> dict[str, Any]:
         along[k] = to_texture @ lattice.stack.view.axes.T @ lattice.to_light()
     lattice = plan.lamps[0].lattice
     return {
-        "u_shear": shear, "u_lattice_origin": origin, "u_rear": rear, "u_layers_per_light": LAYERS,
+        "u_shear": shear, "u_lattice_origin": origin, "u_rear": rear, "u_layers_per_light": plan.per_light,
         "u_texel": lattice.texel, "u_lattice_size": tuple(map(float, lattice.size)),
         "u_to_light": along, "u_path": path, "u_swept": (plan.slabs[0], plan.slabs[1] - 1),
     }  # fmt: skip
