@@ -31,7 +31,7 @@ def test_picture_and_scene(run, ball, tmp_path):
         "render", ball, "-o", "out.png", "--size", SIZE, "--tilt", 30, "--rotation", 90, "--frames", 2
     )
     assert (outcome.status, outcome.err) == (0, "")
-    assert "out.png: 40 x 30, multidirectional" in outcome.out
+    assert "out.png: 40 x 30, cone" in outcome.out
     picture = pixels("out.png")
     assert picture.shape == (30, 40, 4)
     assert np.ptp(picture[..., :3]) > 40

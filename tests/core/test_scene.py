@@ -216,7 +216,7 @@ def test_any_json_is_a_scene_or_a_scene_error(data: dict[str, Any]) -> None:
     ],
 )
 def test_settings_from_text(path: str, text: str, value: Any) -> None:
-    scene = Scene()
+    scene = Scene(technique="multidirectional")
     parsed = parse_setting(scene, path, text)
     assert parsed == value
     assert type(parsed) is type(value)

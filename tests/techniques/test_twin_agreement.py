@@ -54,7 +54,8 @@ def scene_of(volume: Volume, parallel: bool, *lights: Light, **more: Any) -> Sce
     back = np.subtract(camera.position, camera.focal_point) + np.array([0.5, 0.0, 0.3]) * camera.distance
     place = tuple(camera.focal_point + back / np.linalg.norm(back) * camera.distance)
     camera = Camera(place, camera.focal_point, (0, 0, 1), 40.0, parallel, camera.parallel_scale)
-    return Scene(volume=volume, transfer=TRANSFER, camera=camera, lights=lights or (Light(),), **more)
+    values = {"technique": "multidirectional", "transfer": TRANSFER, "camera": camera, **more}
+    return Scene(volume=volume, lights=lights or (Light(),), **values)
 
 
 def decibels(picture: np.ndarray, expected: np.ndarray) -> float:

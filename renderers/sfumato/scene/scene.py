@@ -70,7 +70,7 @@ class Scene:
     transfer: TransferFunction | None = None
     camera: Camera | None = None
     lights: tuple[Light, ...] = (Light(),)
-    technique: Any = "multidirectional"
+    technique: Any = "cone"
     step: Annotated[
         float,
         Param(

@@ -52,6 +52,7 @@ def make_scene() -> Callable[..., Scene]:
         volume: Volume, transfer: TransferFunction, *lights: Light, parallel: bool = True, **more: Any
     ) -> Scene:
         more.setdefault("camera", facing(volume, parallel))
+        more.setdefault("technique", "multidirectional")
         return Scene(volume=volume, transfer=transfer, lights=lights or (Light(),), **more)
 
     return make
