@@ -28,7 +28,7 @@ def hero_panels() -> tuple[Panel, ...]:
     return panels(
         (scene.with_(technique="raycast"), "unlit"),
         (headlamp(scene), "lit from the eye"),
-        (lit(scene), "lit from the top left"),
+        (lit(scene).with_(technique="cone"), "lit from the top left"),
     )
 
 
