@@ -154,6 +154,8 @@ def test_colouring_a_lamp(lit: MainWindow, qtbot: QtBot) -> None:
     qtbot.mouseClick(tools.color, LEFT)
     dialog = QApplication.activeModalWidget()
     assert isinstance(dialog, QColorDialog)
+    corner = lit.mapToGlobal(lit.rect().bottomRight())
+    assert 0 < corner.x() - dialog.geometry().right() < 20, "over the panel, not the picture"
     dialog.setCurrentColor(QColor(255, 0, 0))
     dialog.accept()
     assert lit.editor.scene.lights[0].color == pytest.approx((1, 0, 0), abs=1e-3)

@@ -39,6 +39,8 @@ def test_they_show_the_users_scene(window: MainWindow, qtbot: QtBot) -> None:
     assert row.buttons["rim"].image.width() == round(PICTURE[0] * ratio)
     assert np.abs(images["top-left"] - images["rim"]).mean() > 1
     assert np.abs(images["top-left"] - images["raking"]).mean() > 1
+    assert row.isEnabled()
+    assert "Open a volume" not in row.buttons["rim"].toolTip()
     before = images["rim"]
     window.look("left")
     qtbot.waitUntil(lambda: np.abs(pixels(row.buttons["rim"].image) - before).mean() > 1, timeout=120_000)
@@ -109,3 +111,9 @@ def test_pictures_of_other_data_do_not_stay(window: MainWindow, ball_scene: Scen
     window.editor.reset(ball_scene)
     assert all(button.image.isNull() for button in row.buttons.values())
     wait_for_pictures(row, qtbot)
+
+
+def test_with_nothing_open_they_say_why_they_wait(make_window: Any) -> None:
+    row = make_window().light_page.rigs
+    assert not row.isEnabled()
+    assert all("Open a volume" in button.toolTip() for button in row.buttons.values())

@@ -122,6 +122,7 @@ def test_work_is_recovered_after_a_crash(make_window: Any, start_victims: Start,
     qtbot.waitUntil(lambda: window.messages.kind == "question")
     assert window.messages.text.startswith("Unsaved work on “ball.npy” from ")
     click(window, qtbot, "Recover")
+    assert window.focusWidget() is window.viewport, "not what comes next to the button"
     qtbot.waitUntil(lambda: window.editor.scene.volume is not None, timeout=20_000)
     assert window.editor.scene.lights[0].tilt == 51
     assert window.isWindowModified(), "recovered work is still not saved"

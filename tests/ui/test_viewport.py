@@ -132,12 +132,14 @@ def test_holding_b_shows_the_unlit_picture(window: MainWindow, hand: Any, qtbot:
     lit = hand.pixels()
     window.viewport.setFocus()
     qtbot.keyPress(window.viewport, Qt.Key.Key_B)
+    assert window.top.before.isDown()
     hand.wait_for_picture()
     assert window.viewport.picture.scene.technique_id == "raycast"
     assert np.abs(hand.pixels() - lit).mean() > 1
     qtbot.keyRelease(window.viewport, Qt.Key.Key_B)
     hand.wait_for_picture()
-    assert window.viewport.picture.scene.technique_id == "multidirectional"
+    assert not window.top.before.isDown()
+    assert window.viewport.picture.scene.technique_id == window.editor.scene.technique_id != "raycast"
     assert not window.editor.document.modified, "looking is no edit"
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QSize, Signal
+from qtpy.QtCore import QPoint, QSize, Signal
 from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QColorDialog, QPushButton
 
 from .theme import current_theme
 
 RGB = tuple[float, float, float]
+#: Of the dialog from the window's edges, in pixels.
+MARGIN = 12
 
 
 def to_srgb(color: RGB) -> QColor:
@@ -67,6 +69,15 @@ class ColorButton(QPushButton):
         dialog.finished.connect(dialog.deleteLater)
         self.opened.emit()
         dialog.open()
+        dialog.move(self._beside(dialog))
+
+    def _beside(self, dialog: QColorDialog) -> QPoint:
+        """Return the dialog's place: over the panel, in the window's lower right corner, off the subject."""
+        window = self.window()
+        corner = window.mapToGlobal(window.rect().bottomRight())
+        place = corner - QPoint(dialog.width() + MARGIN, dialog.height() + MARGIN)
+        screen = self.screen().availableGeometry()
+        return QPoint(max(screen.left(), place.x()), max(screen.top(), place.y()))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the colour inside the button's frame."""

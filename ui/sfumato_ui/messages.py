@@ -24,6 +24,8 @@ from .theme import current_theme
 
 #: A notice goes away by itself after this, in milliseconds; an error stays until it is closed.
 NOTICE_MS = 12_000
+#: Of the bar from the picture's upper edge in pixels: a letter there is covered as a whole.
+TOP = 6
 
 
 class MessageBar(QFrame):
@@ -117,6 +119,9 @@ class MessageBar(QFrame):
             if self.kind == "question":
                 self._question = None
             self.kind = ""
+            focus = self.window().focusWidget()
+            if focus is not None and self.isAncestorOf(focus):
+                self._over.setFocus()  # else Qt gives it to whatever comes next
             self.hide()
             if self._question is not None:
                 self._show("question", *self._question)
@@ -131,7 +136,7 @@ class MessageBar(QFrame):
         taken += 0 if self.kind == "progress" else 40
         self._text.setFixedWidth(max(60, width - 60 - taken))
         self.adjustSize()
-        self.move((parent.width() - self.width()) // 2, 12)
+        self.move((parent.width() - self.width()) // 2, TOP)
 
     def _show(self, kind: str, text: str, answers: Mapping[str, Callable[[], object]] | None = None) -> None:
         self._fade.stop()

@@ -46,8 +46,7 @@ def draw_letters(painter: QPainter, area: QRect, letters: dict[str, str] | None)
 
 
 def draw_hint(painter: QPainter, area: QRect, text: str) -> None:
-    """Draw the hint near the picture's lower edge."""
+    """Draw the hint in the picture's lower right corner, where the subject seldom is and no letter."""
     metrics = painter.fontMetrics()
     width, height = metrics.horizontalAdvance(text) + 28, metrics.height() + 14
-    top = area.bottom() - height - metrics.height() - 24
-    draw_text(painter, QRectF(area.center().x() - width / 2, top, width, height), text)
+    draw_text(painter, QRectF(area.right() - width - 7, area.bottom() - height - 7, width, height), text)

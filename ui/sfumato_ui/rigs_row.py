@@ -48,7 +48,7 @@ class RigButton(QAbstractButton):
         self.setCheckable(True)
         self.setText(rig.title)
         self.setAccessibleName(f"Rig {rig.title}")
-        self.setToolTip(f"<p><b>{rig.title}</b></p><p>{rig.description}</p>")
+        self.set_reason("")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -62,6 +62,11 @@ class RigButton(QAbstractButton):
         """Show a picture."""
         self._image = image
         self.update()
+
+    def set_reason(self, reason: str) -> None:
+        """Say in the tooltip what the rig does, and why it cannot be had."""
+        why = f"<p>{reason}</p>" if reason else ""
+        self.setToolTip(f"<p><b>{self.rig.title}</b></p><p>{self.rig.description}</p>{why}")
 
     def nextCheckState(self) -> None:
         """Leave the mark to the scene: a click on the current rig does not take it away."""
@@ -105,7 +110,8 @@ class RigButton(QAbstractButton):
         frame = QRectF((self.width() - PICTURE[0]) / 2, 3, *PICTURE)
         rounded = QPainterPath()
         rounded.addRoundedRect(frame, 4, 4)
-        painter.fillPath(rounded, QColor(PICTURE_GREY))
+        if self.isEnabled() or not self._image.isNull():
+            painter.fillPath(rounded, QColor(PICTURE_GREY))
         painter.save()
         painter.setClipPath(rounded)
         painter.setOpacity(1.0 if self.isEnabled() else 0.4)
@@ -124,7 +130,10 @@ class RigButton(QAbstractButton):
         """Draw an accent frame for the current rig, and the focus ring around it."""
         theme = current_theme()
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        if self.isChecked():
+        if not self.isEnabled() and self._image.isNull():
+            painter.setPen(QPen(QColor(theme.border), 1, Qt.PenStyle.DashLine))
+            painter.drawRoundedRect(frame.adjusted(0.5, 0.5, -0.5, -0.5), 4, 4)
+        elif self.isChecked():
             painter.setPen(QPen(QColor(theme.accent), 3))
             painter.drawRoundedRect(frame.adjusted(0.5, 0.5, -0.5, -0.5), 4, 4)
         elif self.underMouse() and self.isEnabled():
@@ -168,6 +177,10 @@ class RigsRow(QWidget):
         """Disable the rigs for a reason, or enable them if there is none."""
         self.setEnabled(not reason)
         self.setToolTip(reason)
+        for button in self.buttons.values():
+            button.set_reason(reason)
+        if not reason:
+            self._quiet.start()
 
     def _on_changed(self, old: Scene, new: Scene) -> None:
         if old.volume is not new.volume:

@@ -29,7 +29,7 @@ class StatusLine(QFrame):
         keep = self.bar.sizePolicy()
         keep.setRetainSizeWhenHidden(True)
         self.bar.setSizePolicy(keep)
-        row = QHBoxLayout(self)
+        self._row = row = QHBoxLayout(self)
         row.setContentsMargins(14, 3, 14, 3)
         row.setSpacing(18)
         row.addWidget(self.data)
@@ -53,6 +53,7 @@ class StatusLine(QFrame):
         width, height = picture.image.width(), picture.image.height()
         kind = "moving" if picture.interactive else f"frame {picture.frames} of {picture.wanted}"
         self.state.setText(f"{_duration(picture.seconds)}   {width} × {height}   {kind}")
+        self._row.activate()  # at once: the next paint would cut the longer text off
         if picture.settled:
             self.bar.hide()
 

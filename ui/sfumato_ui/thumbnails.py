@@ -53,6 +53,11 @@ class Thumbnails(QObject):
         self._drawn: dict[tuple[str, Hashable], tuple[_Look, QImage]] = {}
         worker.thumbnail.connect(self._on_thumbnail)
 
+    @property
+    def idle(self) -> bool:
+        """Whether every picture that was wanted is there."""
+        return not any(self._wanted.values())
+
     def want(self, group: str, scenes: Mapping[Hashable, Scene], size: tuple[int, int]) -> None:
         """Want pictures of scenes, instead of all that this group still wants.
 

@@ -244,21 +244,25 @@ class MainWindow(QMainWindow):
         """B shows the unlit picture while it is held."""
         if event.key() == Qt.Key.Key_B and not event.modifiers():
             if not event.isAutoRepeat():
-                self.driver.set_unlit(True)
+                self._see_unlit(True)
             return
         super().keyPressEvent(event)
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """End the unlit picture."""
         if event.key() == Qt.Key.Key_B and not event.isAutoRepeat():
-            self.driver.set_unlit(False)
+            self._see_unlit(False)
             return
         super().keyReleaseEvent(event)
+
+    def _see_unlit(self, unlit: bool) -> None:
+        self.driver.set_unlit(unlit)
+        self.top.before.setDown(unlit)
 
     def changeEvent(self, event: QEvent) -> None:
         """End the unlit picture when another window takes the keys."""
         if event.type() == QEvent.Type.ActivationChange and not self.isActiveWindow():
-            self.driver.set_unlit(False)
+            self._see_unlit(False)
         super().changeEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -31,6 +31,9 @@ def _command(
     sample: Annotated[str, Parameter(help="What is opened: a sample, as in sample:hand.")] = DEFAULT_SAMPLE,
     size: Annotated[str, Parameter(help="Of the screenshots, in pixels.")] = "1280x720",
     scale: Annotated[float, Parameter(help="Pixels of the screen a pixel of the window.")] = 1.0,
+    settle: Annotated[
+        float, Parameter(help="Longest wait in s for a step's finished picture; then a coarse one.")
+    ] = 240.0,
 ) -> int:
     if not has_screen():
         raise UsageError("walkthrough: no screen here (DISPLAY is not set); xvfb-run gives one")
@@ -48,7 +51,7 @@ def _command(
     with tempfile.TemporaryDirectory(prefix="sfumato-walk-") as folder:
         os.environ["SFUMATO_SETTINGS"] = folder
         try:
-            _walk(sample, (width, height), output)
+            _walk(sample, (width, height), output, settle)
         finally:
             if kept is None:
                 del os.environ["SFUMATO_SETTINGS"]
@@ -57,7 +60,7 @@ def _command(
     return 0
 
 
-def _walk(sample: str, size: tuple[int, int], output: Path) -> None:
+def _walk(sample: str, size: tuple[int, int], output: Path, settle: float) -> None:
     from sfumato_ui.app import make_application
     from sfumato_ui.quality import QUALITIES, remember_quality
     from sfumato_ui.theme import apply_theme
@@ -69,19 +72,21 @@ def _walk(sample: str, size: tuple[int, int], output: Path) -> None:
     # Most of the walk's time goes into pictures.
     remember_quality(QUALITIES[0])
     steps = list(numbered())
-    _use_window(sample, size, output, steps[: len(WALK)])
+    _use_window(sample, size, output, settle, steps[: len(WALK)])
     leave_unsaved_work(sample)
-    _use_window("", size, output, steps[-len(AFTER_CRASH) :])
+    _use_window("", size, output, settle, steps[-len(AFTER_CRASH) :])
 
 
-def _use_window(sample: str, size: tuple[int, int], output: Path, steps: Iterable[tuple[str, Any]]) -> None:
+def _use_window(
+    sample: str, size: tuple[int, int], output: Path, settle: float, steps: Iterable[tuple[str, Any]]
+) -> None:
     """Go through steps in a new window."""
     from sfumato_ui.window import MainWindow
 
     from .hand import Hand
 
     window = MainWindow()
-    hand = Hand(window, output)
+    hand = Hand(window, output, settle)
     try:
         window.resize(*size)
         window.show()

@@ -40,10 +40,12 @@ class Hand:
         The window, shown.
     folder : Path
         Where its screenshots go.
+    settle : float
+        Longest wait in seconds for a finished picture; then the coarse one is enough.
     """
 
-    def __init__(self, window: MainWindow, folder: Path) -> None:
-        self.window, self.folder = window, folder
+    def __init__(self, window: MainWindow, folder: Path, settle: float = PATIENCE) -> None:
+        self.window, self.folder, self.settle = window, folder, settle
 
     # -- waiting ----------------------------------------------------------------------------------
     def wait_until(self, there: Callable[[], bool], what: str) -> None:
@@ -62,8 +64,13 @@ class Hand:
 
     def rest(self) -> None:
         """Wait until the picture of the scene is finished, and those of rigs and presets if they are seen."""
-        self.wait_until(self._settled, "finished picture")
-        pause(400)
+        until = time.monotonic() + self.settle
+        self.wait_until(
+            lambda: self._shown() and (self._settled() or time.monotonic() > until), "picture of the scene"
+        )
+        pause(600)  # the rigs' pictures are wanted when the scene is still
+        if self._settled():
+            self.wait_until(lambda: self.window.thumbnails.idle, "pictures of rigs and presets")
         page = self.window.light_page
         if page.rigs.isVisible() and page.rigs.isEnabled():
             buttons = page.rigs.buttons.values()
@@ -72,14 +79,17 @@ class Hand:
         if gallery.isVisible():
             self.wait_until(lambda: len(gallery.pictures) == gallery.count(), "pictures of the presets")
 
-    def _settled(self) -> bool:
-        picture, window = self.window.viewport.picture, self.window
+    def _shown(self) -> bool:
+        picture = self.window.viewport.picture
         return (
             picture is not None
-            and picture.settled
-            and picture.scene == window.driver.shown_scene
-            and picture.size == window.viewport.pixel_size
+            and picture.scene == self.window.driver.shown_scene
+            and picture.size == self.window.viewport.pixel_size
         )
+
+    def _settled(self) -> bool:
+        picture = self.window.viewport.picture
+        return picture is not None and picture.settled
 
     # -- acting -----------------------------------------------------------------------------------
     def click(self, widget: QWidget, at: QPoint | None = None, keys: Qt.KeyboardModifier = NONE) -> None:
@@ -141,7 +151,9 @@ class Hand:
                 raise SfumatoError(f"{path}: the screenshot could not be written")
         if current_theme().name != first:
             self.window.set_theme(first)
-        print(f"{name}: {title}", flush=True)
+        picture = self.window.viewport.picture
+        coarse = "" if picture is None or picture.settled else " (the picture is coarse)"
+        print(f"{name}: {title}{coarse}", flush=True)
 
     def seen(self) -> QImage:
         """Return the window with its dialogs and menus on it."""

@@ -97,6 +97,7 @@ def _lamp_colour(hand: Hand) -> None:
     hand.click(hand.window.light_page.tools.color)
     hand.wait_until(lambda: _dialog(QColorDialog) is not None, "colour dialog")
     _type_into(_field(_dialog(QColorDialog), "#"), "#ff9a4d")
+    hand.rest()
 
 
 def _solo(hand: Hand) -> None:
@@ -208,6 +209,7 @@ def _view_more(hand: Hand) -> None:
 def _open_menu(hand: Hand) -> None:
     """Open the menu; its own loop of events must not keep us."""
     hand.choose_tab(0)
+    hand.rest()
     menu = hand.window.top.open.menu()
     menu.popup(hand.window.top.open.mapToGlobal(hand.window.top.open.rect().bottomLeft()))
     hand.wait_until(menu.isVisible, "menu")

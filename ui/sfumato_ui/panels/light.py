@@ -169,6 +169,8 @@ class LightPage(Page):
             self._show_note(new)
         if old.technique != new.technique:
             self._show_technique(new)
+        elif (old.volume is None) != (new.volume is None):
+            self._show_note(new)
 
     def _show_light(self) -> None:
         light = self._editor.light
@@ -204,7 +206,10 @@ class LightPage(Page):
             text = f"This technique uses {technique.max_lights} of {shining} lamps: the first that shines."
         self.note.setText(text)
         self.note.setVisible(bool(text))
-        self.rigs.set_reason("" if technique.lit else text)
+        if scene.volume is None:
+            self.rigs.set_reason("Open a volume to see the rigs on it.")
+        else:
+            self.rigs.set_reason("" if technique.lit else text)
 
     def _rebuild(self, title: str) -> None:
         """Make the technique's own controls: its essentials in its section, the rest under More."""

@@ -63,6 +63,8 @@ class ViewPage(Page):
         self.more = Section("More", "view_more")
         self.quality = ChoiceBox()
         self.theme = ChoiceBox()
+        # Without clip planes all of it fits into a window of 1280 x 720.
+        self.column.setSpacing(4)
         self.add_heading("Camera")
         self.add(self.views)
         self.add(self.parallel)

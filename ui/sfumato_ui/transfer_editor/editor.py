@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from qtpy.QtCore import Qt, Signal
+from qtpy.QtGui import QShowEvent
 from qtpy.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from sfumato import Scene
@@ -140,6 +141,11 @@ class TransferEditor(QWidget):
         self.remove.setToolTip(
             "Remove the point (Del)" if not shown or enough else "The last two points stay"
         )
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Empty the fields again if no point is selected: Qt fills them when they are shown."""
+        super().showEvent(event)
+        self._show_point()
 
     def _fill(self, value: float, opacity: float) -> None:
         plot = self.plot
