@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from qtpy.QtCore import QPoint, QSize, Signal
 from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen
-from qtpy.QtWidgets import QColorDialog, QPushButton
+from qtpy.QtWidgets import QAbstractSpinBox, QColorDialog, QPushButton
 
 from .theme import current_theme
 
@@ -62,6 +62,8 @@ class ColorButton(QPushButton):
         dialog = QColorDialog(to_srgb(self._color), self)
         dialog.setOption(QColorDialog.ColorDialogOption.DontUseNativeDialog)
         dialog.setWindowTitle(self._name)
+        for box in dialog.findChildren(QAbstractSpinBox):  # as the window's own fields of numbers
+            box.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
         dialog.currentColorChanged.connect(lambda color: self.picked.emit(to_linear(color)))
         before = self._color
         dialog.rejected.connect(lambda: self.picked.emit(before))

@@ -122,7 +122,7 @@ class PresetGallery(QListWidget):
         height = PICTURE[1] + self.fontMetrics().height() + 14
         self.setGridSize(QSize(width, height))
         for row in range(self.count()):  # else names would be cut off at the width of the picture
-            self.item(row).setSizeHint(QSize(width - 4, height - 4))
+            self.item(row).setSizeHint(QSize(width - 1, height - 4))
         rows = -(-self.count() // COLUMNS)
         self.setFixedHeight(max(1, rows) * height + 2 * self.frameWidth() + 2)
 

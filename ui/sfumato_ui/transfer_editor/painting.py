@@ -198,16 +198,15 @@ def draw_point(
 
 
 def draw_readout(painter: QPainter, areas: Areas, text: str, theme: Theme) -> None:
-    """Write what lies under the pointer into the upper left corner of the plot."""
+    """Write what lies under the pointer in the tissues' line, else into the plot's upper left corner."""
     metrics = QFontMetricsF(painter.font())
     ground = QColor(theme.base)
-    ground.setAlphaF(0.85)
-    box = QRectF(
-        areas.plot.left() - 4,
-        areas.plot.top() - 6,
-        metrics.horizontalAdvance(text) + 10,
-        metrics.height() + 4,
-    )
+    if areas.marks.height():  # it names the tissue, and covers no point there
+        box = areas.marks.adjusted(-4, 0, 4, -3)
+    else:
+        ground.setAlphaF(0.85)
+        width = metrics.horizontalAdvance(text) + 10
+        box = QRectF(areas.plot.left() - 4, areas.plot.top() - 6, width, metrics.height() + 4)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(ground)
     painter.drawRoundedRect(box, 3, 3)
