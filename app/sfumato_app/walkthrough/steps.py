@@ -30,6 +30,8 @@ Step = tuple[str, str, Callable[[Hand], None]]
 
 #: Where the hand lets the lamp go, as fractions of the picture.
 LET_GO = (0.52, 0.36)
+#: Of the exported picture in pixels, whatever the window's: llvmpipe takes half a minute for it.
+EXPORT_WIDTH = "900"
 
 
 def _nothing(hand: Hand) -> None:
@@ -225,9 +227,11 @@ def _export(hand: Hand) -> None:
 
 
 def _exporting(hand: Hand) -> None:
-    """Answer both dialogs by keys, and look while the file is drawn."""
+    """Type a width, answer both dialogs, and look while the file is drawn."""
     dialog = _dialog(ExportDialog)
     assert isinstance(dialog, ExportDialog)
+    _type_into(dialog.pixels[0].lineEdit(), EXPORT_WIDTH)
+    QTest.keyClick(dialog.pixels[0], Qt.Key.Key_Tab)
     hand.click(dialog.go)
     _answer_file(hand, hand.folder / "walk.png")
     hand.wait_until(lambda: hand.window.messages.kind == "progress", "progress of the export")
