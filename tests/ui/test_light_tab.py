@@ -150,6 +150,7 @@ def test_choosing_a_technique_opens_its_section(window: MainWindow, hand: Any, q
 
 def test_generated_controls_tell_range_and_go_back_to_the_default(window: MainWindow, qtbot: QtBot) -> None:
     page, editor = window.light_page, window.editor
+    editor.change("Choose the technique", technique="multidirectional")
     page.more.set_open(True)
     page.own.set_open(True)
     names = {control.name: control for control in page.controls}

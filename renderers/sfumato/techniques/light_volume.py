@@ -175,7 +175,9 @@ def grid_for(frame: Frame, material: Material, angles: tuple[float, float], aper
     corners = visible_corners(frame, material)
     assert corners is not None
     extent = np.ptp(view.coordinates(corners), axis=0)
-    texel = max(texel_of(frame, aperture), float(np.prod(extent) / MAX_TEXELS) ** (1 / 3))
+    longest = frame.device.max_texture_3d - 64  # less what the border may take
+    fitting = max(float(np.prod(extent) / MAX_TEXELS) ** (1 / 3), float(extent.max()) / longest)
+    texel = max(texel_of(frame, aperture), fitting)
     stack = Stack.through(view, corners, texel, frame.jitter)
     offsets, secants = directions_of_cone(aperture, DIRECTIONS, frame.index)
     shares = shares_of(view, frame, offsets, secants)
