@@ -9,8 +9,8 @@ Use it for everything that is to look right: penumbrae grow in proportion to the
 contact to soft, whatever the number of slices. The light volume is kept while lamp and opacity stay the same,
 so a change of colours, a zoom or a crop of the picture costs one ray casting.
 
-Source: our own; measured against `reference` in ``docs/accuracy.md``. The slab term and the normalisation
-of the light are those of `multidirectional`.
+Source: our own; measured against `reference` in ``docs/accuracy.md``, with what else was tried in
+``docs/candidates.md``. The slab term and the normalisation of the light are those of `multidirectional`.
 
 Limits: an occluder grows by up to half a texel of the light volume (1 to 1.5 voxels), which small thick things
 in wide light show; a single frame has faint stripes where light grazes a surface; parallel light only; in the
