@@ -42,7 +42,10 @@ def linear(scene: Scene, side: int = SIDE) -> np.ndarray:
     return sfumato.render(scene, (side, side), linear=True)[..., 0].astype(np.float64)
 
 
-@pytest.mark.parametrize(("tilt", "aperture"), [(0, 30), (35, 15), (50, 25), (70, 8)])
+@pytest.mark.parametrize(
+    ("tilt", "aperture"),
+    [(35, 15), (50, 25), *(pytest.param(*p, marks=pytest.mark.slow) for p in ((0, 30), (70, 8)))],
+)
 def test_a_balls_shadow_is_the_ray_traced_one(tilt: float, aperture: float) -> None:
     light = Light(tilt=tilt, aperture=aperture, rotation=140)
     bare, truth = (

@@ -107,7 +107,13 @@ def test_contrast(theme: Theme) -> None:
     assert contrast("#ffffff", PICTURE_GREY) >= 4.5
 
 
-@pytest.mark.parametrize(("scale", "font"), [(1.0, 1.0), (1.5, 1.0), (2.0, 1.0), (1.0, 1.25)])
+@pytest.mark.parametrize(
+    ("scale", "font"),
+    [
+        (1.0, 1.25),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in ((1.0, 1.0), (1.5, 1.0), (2.0, 1.0))),
+    ],
+)
 def test_the_walk_finds_nothing_wrong(scale: float, font: float, tmp_path: Path) -> None:
     """All tabs and dialogs in both themes; what is looked at is told in `panel_walk`."""
     env = {**os.environ, "QT_SCALE_FACTOR": str(scale), "SFUMATO_SETTINGS": str(tmp_path)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from pytestqt.qtbot import QtBot
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QImage
@@ -90,6 +91,7 @@ def test_by_keys(window: MainWindow, qtbot: QtBot) -> None:
     assert marked(row) == ["headlamp"]
 
 
+@pytest.mark.slow
 def test_a_hidden_tab_draws_nothing(window: MainWindow, hand: Any, qtbot: QtBot) -> None:
     row = window.light_page.rigs
     wait_for_pictures(row, qtbot)
@@ -105,6 +107,7 @@ def test_a_hidden_tab_draws_nothing(window: MainWindow, hand: Any, qtbot: QtBot)
     qtbot.waitUntil(lambda: told.count("rigs") >= len(row.buttons), timeout=120_000)
 
 
+@pytest.mark.slow
 def test_pictures_of_other_data_do_not_stay(window: MainWindow, ball_scene: Scene, qtbot: QtBot) -> None:
     row = window.light_page.rigs
     wait_for_pictures(row, qtbot)

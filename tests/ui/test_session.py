@@ -134,6 +134,7 @@ def test_work_is_recovered_after_a_crash(make_window: Any, start_victims: Start,
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs a signal that cannot be caught")
+@pytest.mark.slow
 def test_several_crashes_are_offered_one_by_one_and_discarding_removes(
     make_window: Any, start_victims: Start, qtbot: QtBot
 ) -> None:
@@ -149,6 +150,7 @@ def test_several_crashes_are_offered_one_by_one_and_discarding_removes(
     assert window.editor.scene.volume is None
 
 
+@pytest.mark.slow
 def test_a_window_leaves_the_work_of_a_living_one_alone(
     make_window: Any, start_victims: Start, qtbot: QtBot
 ) -> None:
