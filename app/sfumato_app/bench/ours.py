@@ -65,7 +65,7 @@ class MovingLight(Ours):
     Parameters
     ----------
     angle : str
-        What moves: ``rotation`` or ``tilt``.
+        What moves: ``rotation``, ``tilt`` or ``aperture``.
     swing : int
         Degrees within which it moves, in strides; with 1 it only trembles.
     """

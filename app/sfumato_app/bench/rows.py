@@ -83,8 +83,10 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("vtk-cpu-shaded", "VTK fixed point (CPU), shaded", _vtk("cpu_mapper", shade=True)),
         ("half-angle", "half-angle slicing", _ours("half-angle")),
         ("slices-phong", "slices, Phong", _ours("slices-phong")),
-        ("directional", "directional occlusion", _ours("directional")),
-        ("multidirectional", "multidirectional occlusion", _ours("multidirectional")),
+        # Light that rests is kept; so lamps tremble. A headlamp has no rotation: there its aperture does.
+        ("directional", "directional occlusion", _moving("directional", "aperture", swing=1)),
+        ("multidirectional", "multidirectional occlusion", _moving("multidirectional", "rotation", swing=1)),
+        ("multidirectional-still", "... its light kept from the frame before", _ours("multidirectional")),
         ("multidirectional-turning", "... its light turning", _moving("multidirectional", "rotation")),
         ("multidirectional-tilting", "... its light tilting", _moving("multidirectional", "tilt")),
         (

@@ -139,7 +139,11 @@ def frame_cpu(renderer: Renderer, scene: Scene, side: int, contestant: Contestan
     """Return the CPU time of a first frame with the light just moved, in ms: median of some."""
     times = []
     for n in range(TIMED):
-        moved = scene.with_({"lights.0.rotation": scene.lights[0].rotation + NUDGE * (n + 1)})
+        # The aperture too: a headlamp has no rotation.
+        light, by = scene.lights[0], NUDGE * (n + 1)
+        moved = scene.with_(
+            {"lights.0.rotation": light.rotation + by, "lights.0.aperture": light.aperture + by}
+        )
         began = time.process_time()
         job = renderer.begin(moved, (side, side), contestant.quality)
         for _ in job.add_frame():
