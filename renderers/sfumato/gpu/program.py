@@ -131,6 +131,36 @@ class Program:
         self._program.release()
 
 
+class Variants:
+    """Programs of one fragment shader by their defines, each compiled when first asked for.
+
+    Parameters
+    ----------
+    fragment, vertex : str
+        Shader files, relative to the package; without a vertex shader the programs cover the viewport.
+    """
+
+    def __init__(self, device: Device, fragment: str, vertex: str = "") -> None:
+        self.device = device
+        self._fragment, self._vertex = fragment, vertex
+        self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
+
+    def get(self, defines: tuple[tuple[str, int], ...]) -> Program:
+        """Return the program of a set of defines."""
+        if defines not in self._programs:
+            vertex = (
+                (PACKAGE / self._vertex).read_text(encoding="utf-8") if self._vertex else FULLSCREEN_VERTEX
+            )
+            self._programs[defines] = Program(self.device, ShaderSource(self._fragment, defines), vertex)
+        return self._programs[defines]
+
+    def release(self) -> None:
+        """Free the programs."""
+        for program in self._programs.values():
+            program.release()
+        self._programs.clear()
+
+
 def _byte_size(member: Any) -> int:
     return int(member.dimension) * int(member.array_length) * 4
 

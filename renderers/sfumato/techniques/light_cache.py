@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from collections.abc import Hashable
+from collections.abc import Callable, Generator, Hashable, Iterator
 from typing import Any
 
 from ..gpu import Store
@@ -54,6 +54,30 @@ class LightCache:
             if self._store is None
             else min(self._own_budget, int(self._store.budget * SHARE))
         )
+
+    def swept(
+        self,
+        key: Hashable,
+        size: tuple[int, int, int],
+        sweep: Callable[[Any], Iterator[float]],
+        in_use: int = 0,
+    ) -> Generator[float, None, Any]:
+        """Return the texture that holds a sweep; if none does, sweep into one, yielding the share done.
+
+        A sweep that is given up leaves nothing behind. The `in_use` newest of those kept are left alone.
+        """
+        kept = self.find(key)
+        if kept is not None:
+            return kept
+        texture, complete = self.take(size, in_use), False
+        try:
+            yield from sweep(texture)
+            complete = True
+        finally:
+            if not complete:
+                texture.release()
+        self.keep(key, texture)
+        return texture
 
     def find(self, key: Hashable) -> Any:
         """Return the texture that holds a sweep, or None."""

@@ -49,7 +49,7 @@ vec4 arriving(sampler2D state, int first) {
 
 void main() {
 #if HOLLOW
-    #define PASS(group) arriving(u_state##group, 4 * group)
+    #define PASS(state, group) arriving(state, 4 * group)
 #else
     vec3 enter = u_enter * vec3(gl_FragCoord.xy, 1.0);
     vec3 leave = u_leave * vec3(gl_FragCoord.xy, 1.0);
@@ -63,29 +63,25 @@ void main() {
     float absorbed = tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
     // exp(-absorbed * secant) of all directions from three of them, by Lagrange's polynomial.
     vec3 left = exp(-absorbed * u_secants);
-    #define PASS(group) (arriving(u_state##group, 4 * group) * (left.x * u_weight0[group] + left.y * u_weight1[group] + left.z * u_weight2[group]))
+    #define PASS(state, group) (arriving(state, 4 * group) * (left.x * u_weight0[group] + left.y * u_weight1[group] + left.z * u_weight2[group]))
 #endif
-    o_state0 = PASS(0);
-    vec4 sum = o_state0 * u_share[0];
+    #define TAKE(result, state, group) result = PASS(state, group); sum += result * u_share[group];
+    vec4 sum = vec4(0.0);
+    TAKE(o_state0, u_state0, 0)
 #if DIRECTIONS > 4
-    o_state1 = PASS(1);
-    sum += o_state1 * u_share[1];
+    TAKE(o_state1, u_state1, 1)
 #endif
 #if DIRECTIONS > 8
-    o_state2 = PASS(2);
-    sum += o_state2 * u_share[2];
+    TAKE(o_state2, u_state2, 2)
 #endif
 #if DIRECTIONS > 12
-    o_state3 = PASS(3);
-    sum += o_state3 * u_share[3];
+    TAKE(o_state3, u_state3, 3)
 #endif
 #if DIRECTIONS > 16
-    o_state4 = PASS(4);
-    sum += o_state4 * u_share[4];
+    TAKE(o_state4, u_state4, 4)
 #endif
 #if DIRECTIONS > 20
-    o_state5 = PASS(5);
-    sum += o_state5 * u_share[5];
+    TAKE(o_state5, u_state5, 5)
 #endif
 #if HOLLOW
     const float open = 1.0;

@@ -22,8 +22,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ..gpu import Device, LayerTarget, Program, ShaderSource
-from ..gpu.program import PACKAGE
+from ..gpu import Device, LayerTarget, Program, Variants
 from .frame import Frame
 from .marcher import Material, bind_material, blocks_along, material_defines, visible_corners
 from .stack import PAD, Lattice, Stack, View
@@ -208,7 +207,7 @@ class LightSweeper:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
+        self._programs = Variants(device, "techniques/light_sweep.frag.glsl", "shaders/tiles.vert.glsl")
         self._targets: list[LayerTarget] = []
         self._tiles = TileTexture(device)
         self._lists: Any = None
@@ -264,9 +263,10 @@ class LightSweeper:
         self._lists = grid.tiles(frame, material)
         self._tiles.upload(self._lists)
         self._to_texture = texture_from_view(frame, lattice.stack)
-        full = self._program((("HOLLOW", 0), *material_defines(material)))
+        number = (("DIRECTIONS", DIRECTIONS), ("LAST", DIRECTIONS // 4))
+        full = self._programs.get((*number, ("HOLLOW", 0), *material_defines(material)))
         bind_material(full, material, frame)
-        hollow = self._program((("HOLLOW", 1),))
+        hollow = self._programs.get((*number, ("HOLLOW", 1)))
         inner, size = lattice.border - PAD, lattice.size
         for program in (full, hollow):
             program.set(
@@ -277,16 +277,6 @@ class LightSweeper:
                 u_texel_size=(1 / size[0], 1 / size[1]), u_thickness=lattice.stack.step,
             )  # fmt: skip
         return full, hollow
-
-    def _program(self, defines: tuple[tuple[str, int], ...]) -> Program:
-        if defines not in self._programs:
-            source = ShaderSource(
-                "techniques/light_sweep.frag.glsl",
-                (("DIRECTIONS", DIRECTIONS), ("LAST", DIRECTIONS // 4), *defines),
-            )
-            vertex = (PACKAGE / "shaders/tiles.vert.glsl").read_text(encoding="utf-8")
-            self._programs[defines] = Program(self.device, source, vertex)
-        return self._programs[defines]
 
     def _make_states(self, size: tuple[int, int]) -> None:
         if self._targets and self._targets[0].state.size == size:
@@ -304,9 +294,7 @@ class LightSweeper:
 
     def release(self) -> None:
         """Free programs and states."""
-        for program in self._programs.values():
-            program.release()
-        self._programs.clear()
+        self._programs.release()
         self._release_targets()
         self._tiles.release()
 

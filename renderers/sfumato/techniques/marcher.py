@@ -16,9 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from ..gpu import Device, Program, ShaderSource, Target
+from ..gpu import Device, Program, Target, Variants
 from ..gpu.tables import TransferTables, make_tables, occupied_blocks
 from ..gpu.volume_texture import EmptySpace, VolumeTexture, map_empty_space, upload_volume
+from ..scene import nearest_possible_tilt
 from .frame import Frame
 from .stack import Stack, View, clip_uniforms
 
@@ -136,7 +137,7 @@ class Marcher:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
+        self._programs = Variants(device, "techniques/march.frag.glsl")
         self._pair: tuple[Target, Target] | None = None
         self._piece = float(PIECE_PIXELS)
 
@@ -148,11 +149,7 @@ class Marcher:
             ("EMISSION", int(material.tables.emits)),
             *material_defines(material),
         )  # fmt: skip
-        if defines not in self._programs:
-            self._programs[defines] = Program(
-                self.device, ShaderSource("techniques/march.frag.glsl", defines)
-            )
-        return self._programs[defines]
+        return self._programs.get(defines)
 
     def begin(self, frame: Frame) -> None:
         """Make the two pictures for a frame's size."""
@@ -206,9 +203,7 @@ class Marcher:
 
     def release(self) -> None:
         """Free programs and pictures."""
-        for program in self._programs.values():
-            program.release()
-        self._programs.clear()
+        self._programs.release()
         self._release_pair()
 
     def _release_pair(self) -> None:
@@ -267,6 +262,12 @@ def pixel_box(frame: Frame, corners: np.ndarray) -> tuple[int, int, int, int]:
     return int(x0), int(y0), int(x1), int(y1)
 
 
+def visible_box(frame: Frame, material: Material) -> tuple[int, int, int, int]:
+    """Return the pixels (as `pixel_box`) that what is visible can cover; an empty box if nothing is."""
+    corners = visible_corners(frame, material)
+    return (0, 0, 0, 0) if corners is None else pixel_box(frame, corners)
+
+
 def is_empty(box: tuple[int, int, int, int]) -> bool:
     """Tell whether a box of pixels holds none."""
     return box[0] >= box[2] or box[1] >= box[3]
@@ -287,6 +288,22 @@ def lights_towards(frame: Frame) -> list[np.ndarray]:
     return [light.towards(basis, center) for light in frame.scene.active_lights]
 
 
+#: Tilt and rotation of each lamp, in degrees, as the camera sees it.
+Angles = tuple[tuple[float, float], ...]
+
+
+def lamp_angles(frame: Frame) -> Angles:
+    """Return the angles of the active lights.
+
+    Within a degree of grazing a cone's section grows without bound: light stays that far away.
+    """
+    lights = frame.scene.active_lights
+    return tuple(
+        (nearest_possible_tilt(tilt, light.aperture), rotation)
+        for light, (tilt, rotation) in zip(lights, frame.scene.light_angles(), strict=True)
+    )
+
+
 class MarchPainter:
     """Ray casting and slicing without shadows, unlit or Phong-shaded."""
 
@@ -299,8 +316,7 @@ class MarchPainter:
     def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
         material = prepare_material(frame)
-        corners = visible_corners(frame, material)
-        box = (0, 0, 0, 0) if corners is None else pixel_box(frame, corners)
+        box = visible_box(frame, material)
         if is_empty(box):
             self.marcher.clear(frame)
             yield 1.0

@@ -15,8 +15,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ..gpu import Device, LayerTarget, Program, ShaderSource
-from ..gpu.program import PACKAGE
+from ..gpu import Device, LayerTarget, Program, Variants
 from .footprint import Stencil, effective_secant, kernel_moments, stencil_for
 from .frame import Frame
 from .marcher import Material, bind_material, blocks_along, material_defines
@@ -131,7 +130,7 @@ class Sweeper:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
+        self._programs = Variants(device, "techniques/sweep.frag.glsl", "shaders/tiles.vert.glsl")
         self._targets: list[LayerTarget] = []
         self._pairs: list[tuple[Program, Program]] = []
         self._tiles = TileTexture(device)
@@ -153,8 +152,8 @@ class Sweeper:
         self._farthest = border - int(np.abs(taps).max())
         self._pairs = []
         for filtering in (0, 1):
-            hollow = self._program((("LITERAL", form), ("HOLLOW", 1), ("FILTER", filtering)))
-            full = self._program(
+            hollow = self._programs.get((("LITERAL", form), ("HOLLOW", 1), ("FILTER", filtering)))
+            full = self._programs.get(
                 (("LITERAL", form), ("HOLLOW", 0), ("FILTER", filtering), *material_defines(material))
             )
             bind_material(full, material, frame)
@@ -168,13 +167,6 @@ class Sweeper:
                 u_outer=(size[0] - border, size[1] - border),
             )  # fmt: skip
         self._targets[0].plain.clear(self._clear, -1.0)
-
-    def _program(self, defines: tuple[tuple[str, int], ...]) -> Program:
-        if defines not in self._programs:
-            source = ShaderSource("techniques/sweep.frag.glsl", defines)
-            vertex = (PACKAGE / "shaders/tiles.vert.glsl").read_text(encoding="utf-8")
-            self._programs[defines] = Program(self.device, source, vertex)
-        return self._programs[defines]
 
     def load(self, kept: Any) -> None:
         """Go on from a state that `keep` kept."""
@@ -218,9 +210,7 @@ class Sweeper:
 
     def release(self) -> None:
         """Free programs and states."""
-        for program in self._programs.values():
-            program.release()
-        self._programs.clear()
+        self._programs.release()
         self._release_targets()
         self._tiles.release()
 

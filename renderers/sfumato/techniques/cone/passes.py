@@ -2,38 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+import functools
+from collections.abc import Generator, Iterator
 from typing import Any
 
 import numpy as np
 
 from ...gpu import Device, Program
-from ...scene import nearest_possible_tilt
 from ..footprint import effective_secant
 from ..frame import Frame
 from ..light_cache import LightCache
 from ..light_volume import LightGrid, LightSweeper, grid_for
 from ..marcher import (
     VOLUMES,
+    Angles,
     Marcher,
     Material,
     Variant,
     bind_material,
     crop_corners,
     is_empty,
+    lamp_angles,
     light_uniforms,
     lights_towards,
-    pixel_box,
     prepare_material,
     set_view,
-    visible_corners,
+    visible_box,
 )
 from ..near_field import Ways, lay_ways
 from ..slab_texture import SlabTexture
 from ..stack import Stack, View
-
-#: Tilt and rotation of each lamp, in degrees, as the camera sees it.
-Angles = tuple[tuple[float, float], ...]
 
 
 class ConePainter:
@@ -49,22 +47,17 @@ class ConePainter:
     def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
         material = prepare_material(frame)
-        corners = visible_corners(frame, material)
-        box = (0, 0, 0, 0) if corners is None else pixel_box(frame, corners)
+        box = visible_box(frame, material)
         if is_empty(box):
             self.marcher.clear(frame)
             yield 1.0
             return
-        angles = tuple(
-            (nearest_possible_tilt(tilt, light.aperture), rotation)
-            for light, (tilt, rotation) in zip(
-                frame.scene.active_lights, frame.scene.light_angles(), strict=True
-            )
-        )
+        angles = lamp_angles(frame)
         lamps: list[tuple[LightGrid, Any]] = []
         for light, angle in zip(frame.scene.active_lights, angles, strict=True):
             grid = grid_for(frame, material, angle, light.aperture)
-            texture = yield from self._light(frame, material, grid, len(lamps))
+            sweep = functools.partial(self._sweep, frame, material, grid, len(lamps))
+            texture = yield from self.cache.swept(grid.key, grid.size, sweep, len(lamps))
             lamps.append((grid, texture))
         program = self._program(frame, material, angles, lamps)
         self.marcher.begin(frame)
@@ -73,24 +66,12 @@ class ConePainter:
         self.marcher.finish(frame)
         yield 1.0
 
-    def _light(
-        self, frame: Frame, material: Material, grid: LightGrid, number: int
-    ) -> Generator[float, None, Any]:
-        """Return the texture of a lamp, sweeping it if it is not kept."""
-        kept = self.cache.find(grid.key)
-        if kept is not None:
-            return kept
-        texture = self.cache.take(grid.size, number)
-        complete = False
-        try:
-            for done in self.sweeper.sweep(frame, material, grid, texture):
-                yield 0.5 * (number + done) / len(frame.scene.active_lights)
-            complete = True
-        finally:
-            if not complete:
-                texture.release()
-        self.cache.keep(grid.key, texture)
-        return texture
+    def _sweep(
+        self, frame: Frame, material: Material, grid: LightGrid, number: int, texture: Any
+    ) -> Iterator[float]:
+        """Sweep a lamp, yielding the share done of the frame."""
+        for done in self.sweeper.sweep(frame, material, grid, texture):
+            yield 0.5 * (number + done) / len(frame.scene.active_lights)
 
     def _program(
         self,

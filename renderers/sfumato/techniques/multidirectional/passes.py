@@ -9,6 +9,7 @@ from there when its turn comes.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Generator, Hashable, Iterator
 from dataclasses import dataclass, field
@@ -18,7 +19,6 @@ import moderngl
 import numpy as np
 
 from ...gpu import Device, Program
-from ...scene import nearest_possible_tilt
 from ..frame import Frame
 from ..light_cache import LightCache
 from ..marcher import (
@@ -29,6 +29,7 @@ from ..marcher import (
     bind_material,
     crop_corners,
     is_empty,
+    lamp_angles,
     light_uniforms,
     lights_towards,
     pixel_box,
@@ -130,22 +131,18 @@ class OcclusionPainter:
 
     def _whole(self, frame: Frame, plan: Plan) -> Generator[float, None, Any]:
         """Return the layers of the whole stack, sweeping the lights unless they are kept."""
-        kept = self._cache.find(plan.key)
-        if kept is not None:
-            return kept
+        sweep = functools.partial(self._sweep_whole, frame, plan)
+        return (yield from self._cache.swept(plan.key, plan.layers_size, sweep))
+
+    def _sweep_whole(self, frame: Frame, plan: Plan, layers: Any) -> Iterator[float]:
+        """Sweep the lights through the whole stack, yielding the share done of the frame."""
         self._set_up_sweeps(frame, plan)
-        self._layers = self._cache.take(plan.layers_size, in_use=0)
-        complete = False
+        self._layers = layers
         try:
             for done in self._sweep_batch(plan, plan.slabs):
                 yield 0.5 * done
-            complete = True
         finally:
-            layers, self._layers = self._layers, None
-            if not complete:
-                layers.release()
-        self._cache.keep(plan.key, layers)
-        return layers
+            self._layers = None
 
     def _in_batches(self, frame: Frame, plan: Plan, program: Program) -> Iterator[float]:
         """Sweep and march batch by batch."""
@@ -183,11 +180,7 @@ class OcclusionPainter:
         stack = Stack.through(view, crop_corners(frame), frame.step, frame.jitter)
         depths = view.coordinates(corners)[:, 2]
         lights = frame.scene.active_lights
-        # Within a degree of grazing the cone's section grows without bound: light stays that far away.
-        angles = tuple(
-            (0.0, 0.0) if self.headlamp else (nearest_possible_tilt(tilt, light.aperture), rotation)
-            for light, (tilt, rotation) in zip(lights, frame.scene.light_angles(), strict=True)
-        )
+        angles = ((0.0, 0.0),) * len(lights) if self.headlamp else lamp_angles(frame)
         lamps = lamps_for(frame, material, stack, angles, [light.aperture for light in lights])
         slabs, near = stack.slabs_of(depths.min(), depths.max()), near_slabs(frame)
         key = _key(frame, material, stack, lamps, (slabs, near))
