@@ -10,7 +10,7 @@ import pytest
 from qtpy.QtWidgets import QApplication
 
 from sfumato_app.first_minute import HEAD, Minute, find_drops, first_minute, main, row
-from sfumato_ui.worker import STILL_FRAMES, STILL_SECONDS, affordable_frames
+from sfumato_ui.jobs import STILL_FRAMES, STILL_SECONDS, affordable_frames
 
 DATA = Path(os.environ.get("SFUMATO_DATA", Path(__file__).resolve().parents[3] / "shared" / "data"))
 

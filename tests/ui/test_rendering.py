@@ -12,8 +12,8 @@ from qtpy.QtCore import QPoint, QTimer
 
 from sfumato import GpuError, Scene, Volume
 from sfumato.renderer import Renderer
+from sfumato_ui.jobs import STILL_FRAMES
 from sfumato_ui.window import MainWindow
-from sfumato_ui.worker import STILL_FRAMES
 
 #: Longest gap in seconds between two turns of the event loop; measured under load, hence the margin on 0.1.
 LONGEST_GAP = 0.1

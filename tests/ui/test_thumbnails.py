@@ -12,8 +12,8 @@ from qtpy.QtCore import QPoint
 from qtpy.QtGui import QImage
 
 from sfumato import Scene
+from sfumato_ui.jobs import STILL_FRAMES
 from sfumato_ui.window import MainWindow
-from sfumato_ui.worker import STILL_FRAMES
 
 SIZE = (48, 36)
 

@@ -22,7 +22,7 @@ from sfumato import Scene, SfumatoError
 from .editing import Editor
 from .loading import SCENE_SUFFIX
 from .settings import data_dir
-from .worker import one_line
+from .wording import one_line
 
 #: Milliseconds from a change to the file.
 AUTOSAVE_MS = 3000

@@ -7,9 +7,10 @@ from qtpy.QtCore import QObject, QTimer
 from sfumato import Scene
 
 from .editing import Editor
+from .jobs import Picture, ViewRequest
 from .quality import chosen_quality
 from .viewport import Viewport
-from .worker import Picture, RenderWorker, ViewRequest
+from .worker import RenderWorker
 
 #: Quiet time in milliseconds after which a scene counts as still.
 STILL_MS = 160

@@ -17,11 +17,12 @@ from sfumato.export.tiles import Guest, bands_of
 from .color_button import to_linear
 from .editing import Editor
 from .export_dialog import ExportDialog, ExportWish
+from .jobs import Picture, SaveRequest
 from .messages import MessageBar
 from .settings import settings
 from .theme import PICTURE_GREY
 from .viewport import Viewport
-from .worker import Picture, RenderWorker, SaveRequest
+from .worker import RenderWorker
 
 #: What a tile costs more than its share of pixels, because the light is swept for each.
 _TILE_SHARE = 0.15

@@ -16,7 +16,7 @@ from sfumato import Scene, Volume
 from sfumato.export.png import carries_scene, open_png
 from sfumato.scene.presets import presets_for, suggest_view
 
-from .worker import one_line
+from .wording import one_line
 
 #: Shown when nothing was asked for.
 DEFAULT_SAMPLE = "sample:hand"

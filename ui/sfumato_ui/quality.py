@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .jobs import STILL_FRAMES
 from .settings import settings
-from .worker import STILL_FRAMES
 
 _KEY = "view/quality"
 

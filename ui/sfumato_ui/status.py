@@ -7,7 +7,7 @@ from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QSizePolic
 
 from sfumato import Volume
 
-from .worker import Picture
+from .jobs import Picture
 
 
 class StatusLine(QFrame):

@@ -18,7 +18,8 @@ from qtpy.QtGui import QImage
 
 from sfumato import Scene, Volume
 
-from .worker import RenderWorker, ThumbnailRequest
+from .jobs import ThumbnailRequest
+from .worker import RenderWorker
 
 
 @dataclass(frozen=True)

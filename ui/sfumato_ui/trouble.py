@@ -9,8 +9,9 @@ from qtpy.QtCore import QObject
 from .driver import ViewDriver
 from .editing import Editor
 from .files import Files
+from .jobs import Picture
 from .messages import MessageBar
-from .worker import Picture, RenderWorker
+from .worker import RenderWorker
 
 #: Smallest part of the window's resolution that is offered.
 LEAST_SCALE = 1 / 8

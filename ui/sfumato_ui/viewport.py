@@ -33,10 +33,10 @@ from . import camera_moves, overlay
 from .clip_planes import ClipPlanes
 from .dial import MOVE
 from .editing import Editor
+from .jobs import Picture
 from .theme import DARK, PICTURE_GREY
 from .tools import ClipTool, HandleTool, LightTool, PictureView
 from .tools import light as light_tool
-from .worker import Picture
 
 _MODIFIER = Qt.KeyboardModifier
 LABELS = {"orbit": "Orbit", "pan": "Pan", "zoom": "Zoom", "light": MOVE}

@@ -9,26 +9,28 @@ from __future__ import annotations
 
 import threading
 import time
-import traceback
-from collections.abc import Callable, Generator, Hashable, Iterator
+from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
-import numpy as np
 from qtpy.QtCore import QObject, QThread, Signal
-from qtpy.QtGui import QImage
 
-from sfumato import GpuError, Scene, SfumatoError
-from sfumato.export.tiles import Guest
+from sfumato import GpuError, Scene
 from sfumato.techniques.frame import FULL, Quality
 
+from .jobs import (
+    STILL_FRAMES,
+    Picture,
+    SaveRequest,
+    ThumbnailRequest,
+    ViewRequest,
+    affordable_frames,
+    image_of,
+)
 from .settings import gpu_budget
+from .wording import one_line, remedy_of
 
-#: Jittered frames that a still picture accumulates.
-STILL_FRAMES = 8
-#: Seconds after which a still picture of so many frames is good enough with fewer.
-STILL_SECONDS = 18.0
 #: Qualities while the user drags, finest first; the worker keeps to the finest that is quick enough.
 DRAG_LADDER = (
     Quality(scale=0.5, step=2.0, light=2.0),
@@ -42,57 +44,6 @@ THUMBNAIL = Quality(step=3.0, light=3.0)
 THUMBNAIL_FRAMES = 2
 #: A drag's frame that takes longer than this, in seconds, shows its progress.
 SLOW_SECONDS = 0.5
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A finished picture and how it came about."""
-
-    image: QImage
-    scene: Scene
-    size: tuple[int, int]
-    seconds: float
-    frames: int
-    interactive: bool
-    #: Frames that it will have in the end.
-    wanted: int = STILL_FRAMES
-
-    @property
-    def settled(self) -> bool:
-        """Whether no better picture of this scene will follow."""
-        return not self.interactive and self.frames >= self.wanted
-
-
-@dataclass(frozen=True)
-class ViewRequest:
-    """The window wants to see this scene at this size in pixels."""
-
-    scene: Scene
-    size: tuple[int, int]
-    interactive: bool
-    frames: int = STILL_FRAMES
-
-
-@dataclass(frozen=True)
-class SaveRequest:
-    """A file is to be drawn and written on the worker's thread.
-
-    ``work`` is given the renderer and a guest to whom it lends it in between; it yields its progress (0 to 1)
-    and ends at once when it is closed. ``done`` names the file.
-    """
-
-    work: Callable[[Any, Guest], Generator[float, None, None]]
-    done: str
-
-
-@dataclass(frozen=True)
-class ThumbnailRequest:
-    """A control wants a small picture; ``group`` and ``key`` are its own names for it."""
-
-    group: str
-    key: Hashable
-    scene: Scene
-    size: tuple[int, int]
 
 
 class RenderWorker(QObject):
@@ -204,7 +155,7 @@ class RenderWorker(QObject):
             if not self._stopping and save is not None:
                 self.save_failed.emit(one_line(error))
             elif not self._stopping:
-                self.failed.emit(one_line(error), _remedy(error))
+                self.failed.emit(one_line(error), remedy_of(error))
 
     def _serve_twice(
         self, save: SaveRequest | None, view: ViewRequest | None, thumbnail: ThumbnailRequest | None
@@ -293,7 +244,7 @@ class RenderWorker(QObject):
                     for _ in accumulation.add_frame():
                         if self._stopping or self._view or self._save or not self._still_wanted(request):
                             return
-                image = _image(accumulation)
+                image = image_of(accumulation)
         except Exception:
             # A scene that cannot be drawn says so when it is the picture; here its place stays empty.
             self._drop_thumbnail(request)
@@ -349,7 +300,7 @@ class RenderWorker(QObject):
         except GpuError as error:
             if error.remedy == "new renderer":
                 raise
-            self.failed.emit(one_line(error), _remedy(error))
+            self.failed.emit(one_line(error), remedy_of(error))
 
 
 class _ViewsFirst:
@@ -382,18 +333,8 @@ def _accumulation(renderer: Any, scene: Scene, size: tuple[int, int], quality: Q
             renderer.device.collect()
 
 
-def affordable_frames(most: int, drawn: int, seconds: float) -> int:
-    """Return how many of a picture's frames to draw, when some are drawn and took so many seconds.
-
-    A slow device settles on fewer frames, unless the user asked for many.
-    """
-    if most > STILL_FRAMES:
-        return most
-    return min(most, max(drawn, round(STILL_SECONDS * drawn / max(seconds, 1e-6))))
-
-
 def _picture(accumulation: Any, request: ViewRequest, seconds: float, wanted: int) -> Picture:
-    shown = _image(accumulation)
+    shown = image_of(accumulation)
     return Picture(
         shown,
         request.scene,
@@ -403,31 +344,3 @@ def _picture(accumulation: Any, request: ViewRequest, seconds: float, wanted: in
         request.interactive,
         wanted,
     )
-
-
-def _image(accumulation: Any) -> QImage:
-    """Return the picture so far in the form that paints quickest.
-
-    The conversion, which also copies, is done here: the window's thread has nothing left to do but to paint.
-    """
-    pixels = np.ascontiguousarray(accumulation.picture())
-    height, width = pixels.shape[:2]
-    image = QImage(pixels.data, width, height, 4 * width, QImage.Format.Format_RGBA8888)
-    return image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
-
-
-def _remedy(error: BaseException) -> str:
-    if isinstance(error, MemoryError):
-        return "smaller picture"
-    return error.remedy if isinstance(error, GpuError) else ""
-
-
-def one_line(error: BaseException) -> str:
-    """Return an error in one line for people; unexpected ones with their kind and place."""
-    if isinstance(error, SfumatoError):
-        return str(error).splitlines()[0]
-    if isinstance(error, MemoryError):
-        return "Not enough memory for this; close other programs or make the picture smaller"
-    frame = traceback.extract_tb(error.__traceback__)[-1]
-    text = (str(error).splitlines() or [""])[0]
-    return f"{type(error).__name__}: {text} ({frame.filename.rsplit('/', 1)[-1]}, line {frame.lineno})"

@@ -24,10 +24,10 @@ from ..clip_controls import ClipControls, CropControls
 from ..clip_planes import ClipPlanes
 from ..editing import Editor
 from ..generated import ChoiceBox, bind_slider, labelled, slider_for
+from ..jobs import STILL_SECONDS
 from ..quality import QUALITIES, chosen_quality, remember_quality
 from ..section import Section
 from ..theme import THEMES, current_theme
-from ..worker import STILL_SECONDS
 from .page import Page
 
 #: Linear RGBA by name; without a background the window shows its grey.

@@ -1,0 +1,90 @@
+"""What the render thread is asked for, and what it gives back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Hashable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from qtpy.QtGui import QImage
+
+from sfumato import Scene
+from sfumato.export.tiles import Guest
+
+#: Jittered frames that a still picture accumulates.
+STILL_FRAMES = 8
+#: Seconds after which a still picture of so many frames is good enough with fewer.
+STILL_SECONDS = 18.0
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A finished picture and how it came about."""
+
+    image: QImage
+    scene: Scene
+    size: tuple[int, int]
+    seconds: float
+    frames: int
+    interactive: bool
+    #: Frames that it will have in the end.
+    wanted: int = STILL_FRAMES
+
+    @property
+    def settled(self) -> bool:
+        """Whether no better picture of this scene will follow."""
+        return not self.interactive and self.frames >= self.wanted
+
+
+@dataclass(frozen=True)
+class ViewRequest:
+    """The window wants to see this scene at this size in pixels."""
+
+    scene: Scene
+    size: tuple[int, int]
+    interactive: bool
+    frames: int = STILL_FRAMES
+
+
+@dataclass(frozen=True)
+class SaveRequest:
+    """A file is to be drawn and written on the worker's thread.
+
+    ``work`` is given the renderer and a guest to whom it lends it in between; it yields its progress (0 to 1)
+    and ends at once when it is closed. ``done`` names the file.
+    """
+
+    work: Callable[[Any, Guest], Generator[float, None, None]]
+    done: str
+
+
+@dataclass(frozen=True)
+class ThumbnailRequest:
+    """A control wants a small picture; ``group`` and ``key`` are its own names for it."""
+
+    group: str
+    key: Hashable
+    scene: Scene
+    size: tuple[int, int]
+
+
+def affordable_frames(most: int, drawn: int, seconds: float) -> int:
+    """Return how many of a picture's frames to draw, when some are drawn and took so many seconds.
+
+    A slow device settles on fewer frames, unless the user asked for many.
+    """
+    if most > STILL_FRAMES:
+        return most
+    return min(most, max(drawn, round(STILL_SECONDS * drawn / max(seconds, 1e-6))))
+
+
+def image_of(accumulation: Any) -> QImage:
+    """Return the picture so far in the form that paints quickest.
+
+    The conversion, which also copies, is done here: the window's thread has nothing left to do but to paint.
+    """
+    pixels = np.ascontiguousarray(accumulation.picture())
+    height, width = pixels.shape[:2]
+    image = QImage(pixels.data, width, height, 4 * width, QImage.Format.Format_RGBA8888)
+    return image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
