@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 import numpy as np
@@ -92,9 +93,11 @@ class MovingLight(Ours):
         )
 
 
+#: Counts the frames of all moving lights: no two contenders' lamps stand at one place either.
+_trifles = itertools.count()
+
+
 def _swing(swing: int) -> Iterator[float]:
-    """Degrees around 0 that do not repeat: nothing kept from an earlier frame can help."""
-    count = 0
-    while True:
-        yield (count * STRIDE) % swing - swing // 2 + TRIFLE * count
-        count += 1
+    """Degrees around 0 that do not repeat: nothing kept from an earlier frame, whose ever, can help."""
+    for count in itertools.count():
+        yield (count * STRIDE) % swing - swing // 2 + TRIFLE * next(_trifles)
