@@ -21,6 +21,8 @@ COPY_SCALE = 0.03
 #: Detail of brightness (root mean square) that the truth is taken to have at least, so that where all is soft
 #: a trace of noise is no copy.
 LEAST_DETAIL = 0.01
+#: Brightness that a wall without shadows is taken to have at least.
+LEAST_SKIN = 0.05
 #: Degrees by which the lamp moves between timed frames, so that nothing kept from the last one helps.
 NUDGE = 1e-3
 TIMED = 3
@@ -60,9 +62,12 @@ class Result:
     cpu : float
         Milliseconds of CPU time a frame, all threads, the light moving; median.
     slices : dict
-        Number of slices -> mean absolute difference of brightness on the wall to the most slices.
+        Number of slices -> mean absolute difference of the shadows on the wall to those at the most slices.
     slices_spread : float or None
-        Largest mean absolute difference between two numbers of slices.
+        Largest mean absolute difference of shadows (brightness over that of the same wall without occluders,
+        drawn with as many slices) between two numbers of slices.
+    skin_spread : float or None
+        The same for the brightness itself: how bright a leaning skin is depends on how thinly it is cut.
     pictures : dict
         Linear pictures by number of frames, at the truth's size.
     """
@@ -73,6 +78,7 @@ class Result:
     cpu: float = 0.0
     slices: dict[int, float] = field(default_factory=dict)
     slices_spread: float | None = None
+    skin_spread: float | None = None
     pictures: dict[int, np.ndarray] = field(default_factory=dict)
 
 
@@ -100,14 +106,30 @@ def measured(
     result.errors = {n: error(picture, truth) for n, picture in result.pictures.items()}
     result.cpu = frame_cpu(renderer, scene, side, contestant)
     if slices:
-        shown = [
-            truth.brightness(draw(renderer, _cut(scene, n), side, contestant, (min(frames),))[min(frames)])
-            for n in slices
-        ]
-        inside = [b[truth.mask] for b in shown]
-        result.slices = {n: _apart(b, inside[-1]) for n, b in zip(slices, inside, strict=True)}
-        result.slices_spread = max((_apart(a, b) for a, b in itertools.combinations(inside, 2)), default=0.0)
+        _compare_slices(renderer, result, truth, frames=min(frames), slices=slices)
     return result
+
+
+def _compare_slices(
+    renderer: Renderer, result: Result, truth: Truth, frames: int, slices: Sequence[int]
+) -> None:
+    """Draw the scene cut into numbers of slices, with its occluders and without."""
+    contestant, side = result.contestant, len(truth.mask)
+    with_all, bare = (contestant.scene(result.trial.scene(bare=without)) for without in (False, True))
+
+    def shown(scene: Scene, count: int) -> np.ndarray:
+        picture = draw(renderer, _cut(scene, count), side, contestant, (frames,))[frames]
+        return truth.brightness(picture)[truth.mask]
+
+    skins = [shown(with_all, n) for n in slices]
+    shadows = [
+        skin / np.maximum(shown(bare, n), LEAST_SKIN) for skin, n in zip(skins, slices, strict=True)
+    ]
+    result.slices = {n: _apart(s, shadows[-1]) for n, s in zip(slices, shadows, strict=True)}
+    result.slices_spread, result.skin_spread = (
+        max((_apart(a, b) for a, b in itertools.combinations(seen, 2)), default=0.0)
+        for seen in (shadows, skins)
+    )
 
 
 def draw(

@@ -44,7 +44,8 @@ Exact rays along 8, 16 and 64 directions instead of a cone have 4.4, 2.8 and 1.0
 _SLICES = """
 ## Slices
 
-Largest mean difference of brightness between {numbers} slices (at most 20 a voxel), in 1/255.
+Largest mean difference of the shadows (brightness over that of the wall alone, cut alike) between {numbers} slices (at
+most 20 a voxel), in 1/255.
 
 """
 _COST = """

@@ -64,6 +64,7 @@ class Report:
         console.print(self._table("copies", lambda r, n: r.errors[n].copies, "{:.2f}"))
         if any(r.slices_spread is not None for r in self.results):
             console.print(self._table("slices", lambda r, n: (r.slices_spread or 0.0) * 255, "{:.2f}"))
+            console.print(self._table("skin", lambda r, n: (r.skin_spread or 0.0) * 255, "{:.2f}"))
         for text, met in goals(self):
             console.print(("met    " if met else "missed ") + text)
 
@@ -87,7 +88,8 @@ class Report:
 _TITLES = {
     "RMSE": "Error of the brightness (RMSE)",
     "copies": "Detail that the truth has not, over the truth's (copies of shadows)",
-    "slices": "Largest mean difference between numbers of slices, in 1/255",
+    "slices": "Largest mean difference of the shadows between numbers of slices, in 1/255",
+    "skin": "The same of the brightness itself, in 1/255",
 }
 
 
@@ -152,4 +154,5 @@ def _result(result: Result) -> dict[str, Any]:
         "errors": {str(n): asdict(e) for n, e in result.errors.items()},
         "slices": {str(n): d for n, d in result.slices.items()},
         "slices_spread": result.slices_spread,
+        "skin_spread": result.skin_spread,
     }
