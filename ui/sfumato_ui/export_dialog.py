@@ -141,8 +141,8 @@ class ExportDialog(QDialog):
         self.dpi.valueChanged.connect(lambda value: self._edit("with_dpi", value))
         self.lock.toggled.connect(lambda on: self._edit("with_lock", on))
         for box in (self.format, self.bits, self.quality):
-            box.currentIndexChanged.connect(self._show_summary)
-        self.scale_bar.toggled.connect(self._show_summary)
+            box.currentIndexChanged.connect(self.show_summary)
+        self.scale_bar.toggled.connect(self.show_summary)
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
 
@@ -170,9 +170,10 @@ class ExportDialog(QDialog):
                 field.setValue(value)
         self.dpi.setValue(size.dpi)
         self._filling = False
-        self._show_summary()
+        self.show_summary()
 
-    def _show_summary(self) -> None:
+    def show_summary(self) -> None:
+        """Say how large the picture becomes, and how long it takes as far as that is known."""
         size = self.size_wanted
         self.go.setEnabled(size.possible)
         if not size.possible:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import Any
 
-from qtpy.QtCore import QObject
+from qtpy.QtCore import QObject, Signal
 from qtpy.QtGui import QColor, QImage, QPainter
 from qtpy.QtWidgets import QApplication, QFileDialog, QWidget
 
@@ -37,6 +37,9 @@ class Exporter(QObject):
     name : callable
         Returns the name of what is open.
     """
+
+    #: It is known anew how long a picture takes.
+    time_known = Signal()
 
     def __init__(
         self,
@@ -70,6 +73,7 @@ class Exporter(QObject):
             self._viewport.pixel_size, camera.parallel_projection, self.seconds_for, self._window
         )
         dialog.accepted.connect(lambda: self._ask_for_file(dialog.wish))
+        self.time_known.connect(dialog.show_summary)
         dialog.finished.connect(dialog.deleteLater)
         dialog.open()
 
@@ -150,6 +154,7 @@ class Exporter(QObject):
         if picture.interactive:
             return
         self._seconds_a_pixel = picture.seconds / max(1, picture.size[0] * picture.size[1])
+        self.time_known.emit()
         if self._copy_wanted:
             self._copy_wanted = False
             self._copy(picture)
