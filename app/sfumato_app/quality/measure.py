@@ -119,7 +119,7 @@ def _compare_slices(
 
     def shown(scene: Scene, count: int) -> np.ndarray:
         picture = draw(renderer, _cut(scene, count), side, contestant, (frames,))[frames]
-        return truth.brightness(picture)[truth.mask]
+        return np.asarray(truth.brightness(picture)[truth.mask])
 
     skins = [shown(with_all, n) for n in slices]
     shadows = [
