@@ -1,7 +1,7 @@
 // The one ray caster: marches the segments first..last-1 of every view ray, front to back, over what earlier passes left.
 //
 // SLICES     samples lie on planes that face the viewer; otherwise at equal distances along each ray
-// SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows, 3: light from lamps' textures
+// SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows, 3: light from lamps' textures, 4: light kept in the volume's space
 // LIGHTS     number of lights
 // LITERAL    1: the published occlusion forms, which light a sample by its opacity, not by the slab term
 // SPECULAR   the swept lights have gradient-based highlights
@@ -34,6 +34,8 @@ uniform int u_rear[4];               // 1: behind the subject, its light enters 
 #include "occlusion"
 #elif SHADING == 3
 #include "light_volume"
+#elif SHADING == 4
+#include "world_light"
 #endif
 
 layout(location = 0) out vec4 o_color;
@@ -155,6 +157,9 @@ void main() {
             Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, value);
             Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, value_next);
             vec3 c = lit(i, front, back, color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
+#elif SHADING == 4
+            float z_mid = 0.5 * (z + z_next);
+            vec3 c = world_lit(color, alpha, a + b * z_mid, ray.origin + ray.direction * z_mid, view);
 #elif SHADING == 2
             vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
 #else

@@ -117,7 +117,7 @@ def blocks_along(view: View, frame: Frame, material: Material) -> tuple[np.ndarr
 
 
 #: How the march shader shades a sample.
-UNLIT, SWEPT, PHONG, VOLUMES = 0, 1, 2, 3
+UNLIT, SWEPT, PHONG, VOLUMES, WORLD = 0, 1, 2, 3, 4
 
 
 @dataclass(frozen=True)
@@ -130,6 +130,7 @@ class Variant:
     literal: bool = False
     near: int = 0
     specular: bool = False
+    facing: bool = False
 
 
 class Marcher:
@@ -146,6 +147,7 @@ class Marcher:
         defines = (
             ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
             ("NEAR", variant.near), ("SHADING", variant.shading), ("SPECULAR", int(variant.specular)),
+            ("FACING", int(variant.facing)),
             ("EMISSION", int(material.tables.emits)),
             *material_defines(material),
         )  # fmt: skip

@@ -25,3 +25,12 @@ vec2 kept_range(vec3 a, vec3 b, vec2 range) {
 #endif
     return range;
 }
+
+// 1 where a point is kept, else 0.
+float kept_point(vec3 t) {
+    bool kept = all(greaterThanEqual(t, u_low)) && all(lessThanEqual(t, u_high));
+#if CLIPS
+    for (int k = 0; k < u_clips; ++k) kept = kept && dot(u_clip[k].xyz, t) + u_clip[k].w >= 0.0;
+#endif
+    return float(kept);
+}

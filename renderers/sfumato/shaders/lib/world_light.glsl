@@ -1,0 +1,53 @@
+// Light that is kept in the volume's own space, whoever looks: from all around, and of lamps.
+//
+// LIGHTS     lamps with a visibility of their own, the first ones
+// FACING     surfaces that turn away from a lamp are darker
+// SPECULAR   surfaces have highlights
+
+uniform sampler3D u_world_light;     // rgb: light from all around and of further lamps; a: visibility of lamp 0
+uniform sampler3D u_world_lamps;     // rgb: visibilities of lamps 1 to 3
+uniform vec3 u_world_scale;          // the volume's texture coordinates to these textures'
+uniform vec3 u_world_offset;
+uniform vec4 u_lamp_place[4];        // world: place of a lamp in mm (w = 1), or the unit vector towards it (w = 0)
+uniform float u_facing;              // how much a surface's slope counts, 0 to 1
+
+// Colour that a segment of opacity alpha sends to the eye; t and p_world are its middle.
+vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
+    vec3 at = t * u_world_scale + u_world_offset;
+    vec4 light = textureLod(u_world_light, at, 0.0);
+    vec3 sum = light.rgb, shine = vec3(0.0);
+#if LIGHTS > 0
+    float visible[4];
+    visible[0] = light.a;
+#if LIGHTS > 1
+    vec3 lamps = textureLod(u_world_lamps, at, 0.0).rgb;
+    visible[1] = lamps.r;
+    visible[2] = lamps.g;
+    visible[3] = lamps.b;
+#endif
+#if FACING || SPECULAR
+    vec3 normal = volume_gradient(t);
+    float strength = length(normal);
+    float surface = strength / (strength + u_edge);
+    normal /= max(strength, 1e-20);
+    // Turned to the viewer, since a gradient has no outside.
+    if (dot(normal, view) < 0.0) normal = -normal;
+#endif
+    for (int l = 0; l < LIGHTS; ++l) {
+        float factor = visible[l];
+#if FACING || SPECULAR
+        vec3 towards = normalize(u_lamp_place[l].xyz - u_lamp_place[l].w * p_world);
+        float facing = dot(normal, towards);
+#endif
+#if SPECULAR
+        float gleam = facing > 0.0 ? pow(max(dot(normal, normalize(towards + view)), 0.0), u_shininess) : 0.0;
+        shine += u_light_color[l] * (factor * u_specular * gleam * surface);
+#endif
+#if FACING
+        factor *= mix(1.0, max(facing, 0.0), u_facing * surface);
+#endif
+        sum += u_light_color[l] * factor;
+    }
+#endif
+    return alpha * (color * sum + shine);
+}
