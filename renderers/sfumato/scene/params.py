@@ -48,6 +48,8 @@ class Param:
         Where its control lives in the window: ``light``, ``material``, ``view`` or nowhere.
     level : str
         ``essential`` or ``more``.
+    none_label : str
+        What no value means, where a parameter may have none: ``"automatic"``, ``"from lamp"``.
     """
 
     meaning: str
@@ -63,6 +65,7 @@ class Param:
     stale: Stale = "frame"
     tab: str = ""
     level: Literal["essential", "more"] = "essential"
+    none_label: str = ""
 
     def allowed(self) -> str:
         """Return the allowed values in words."""

@@ -50,6 +50,8 @@ class Technique:
         Whether a full orbit of the light may change the picture abruptly (half-angle slicing's fault).
     max_lights : int
         How many of the active lights it uses, the first ones.
+    kinds : tuple of str
+        Kinds of lamps that it lights as what they are; others it takes for parallel light from their place.
     ambient_of_lamps : bool
         Whether its parameter ``ambient`` is a share of each lamp, instead of a light of its own.
     options : dict
@@ -65,6 +67,7 @@ class Technique:
     lit: bool = True
     orbit_pops: bool = False
     max_lights: int = 4
+    kinds: tuple[str, ...] = ("directional",)
     ambient_of_lamps: bool = False
     options: dict[str, Any] = field(default_factory=dict, compare=False)
 
