@@ -7,6 +7,7 @@ content, so that any part can be the key of a cache.
 from .camera import STANDARD_VIEWS, Basis, Camera
 from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
 from .document import Document
+from .geometry import Geometry, Lines, Mesh, Roi, Seeds, Surface, Tracing
 from .light import Light, nearest_possible_tilt, tilt_is_possible
 from .params import Field, Param, fields_of
 from .paths import parse_setting
@@ -25,11 +26,18 @@ __all__ = [
     "CropBox",
     "Document",
     "Field",
+    "Geometry",
     "Light",
+    "Lines",
+    "Mesh",
     "Param",
     "Region",
+    "Roi",
     "Scene",
+    "Seeds",
+    "Surface",
     "TechniqueParams",
+    "Tracing",
     "TransferFunction",
     "TransferPoint",
     "Volume",

@@ -10,10 +10,16 @@ import numpy as np
 
 from ..errors import SceneError
 from .params import coerce, fields_of
+from .shapes import Lines, Surface
+from .tracing import Tracing
 from .volume import Volume
 
 if TYPE_CHECKING:
     from .scene import Scene
+
+
+#: What is replaced as a whole: arrays, and what they were made by.
+_LEAVES = (Volume, Lines, Surface, Tracing)
 
 
 def plant(tree: dict[str, Any], path: list[str], value: Any) -> None:
@@ -48,7 +54,7 @@ def changed(node: Any, changes: dict[str, Any], path: str) -> Any:
                 )
             items[int(name)] = child(items[int(name)], change, prefix + name)
         return tuple(items)
-    if not dataclasses.is_dataclass(node) or isinstance(node, Volume):
+    if not dataclasses.is_dataclass(node) or isinstance(node, _LEAVES):
         raise SceneError(path, next(iter(changes.values())), "nothing can be set below this")
     known = fields_of(type(node))
     values = {}
@@ -86,7 +92,7 @@ def parse_setting(scene: Scene, path: str, text: str) -> Any:
         if isinstance(node, tuple) and name.isdigit() and int(name) < len(node):
             node, hint, param = node[int(name)], Any, None
         elif (
-            dataclasses.is_dataclass(node) and not isinstance(node, Volume) and name in fields_of(type(node))
+            dataclasses.is_dataclass(node) and not isinstance(node, _LEAVES) and name in fields_of(type(node))
         ):
             f = fields_of(type(node))[name]
             node, hint, param = getattr(node, name), f.type, f.param
@@ -94,6 +100,6 @@ def parse_setting(scene: Scene, path: str, text: str) -> Any:
             raise SceneError(where, text, "there is no such field in the scene")
     if path == "technique":
         return value
-    if isinstance(node, np.ndarray | Volume):
+    if isinstance(node, (np.ndarray, *_LEAVES)):
         raise SceneError(path, text, "this cannot be set")
     return coerce(tuple(value) if isinstance(value, list) else value, hint, path, param)

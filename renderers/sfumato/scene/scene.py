@@ -9,9 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
+
 from ..errors import LoadError, SceneError
 from .camera import Camera
 from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
+from .geometry import Geometry, with_paths
 from .light import Light, shining
 from .params import Param, check, fields_of, from_json, to_json
 from .paths import changed, plant
@@ -57,8 +60,8 @@ class Scene:
         Jittered frames that `render` accumulates.
     clip, crop
         Clip planes (up to six) and crop box.
-    geometry : tuple
-        Tracts and meshes.
+    geometry : sequence of Geometry
+        Tracts, streamlines and surfaces (`sfumato.load_geometry`).
 
     Raises
     ------
@@ -99,7 +102,7 @@ class Scene:
     ] = 1
     clip: tuple[ClipPlane, ...] = ()
     crop: CropBox = field(default_factory=CropBox)
-    geometry: tuple[Any, ...] = ()
+    geometry: tuple[Geometry, ...] = ()
 
     def __post_init__(self) -> None:
         from ..techniques import params_of
@@ -112,6 +115,10 @@ class Scene:
             raise SceneError("clip", f"{len(self.clip)} planes", f"at most {MAX_CLIP_PLANES}")
         if self.volume is not None:
             self._fill_in_defaults(self.volume)
+        elif self.geometry and self.camera is None:
+            bounds = np.array([g.bounds for g in self.geometry])
+            box = np.array([bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)])
+            object.__setattr__(self, "camera", Camera.fit(box))
 
     def _fill_in_defaults(self, volume: Volume) -> None:
         from .presets import suggest_clip, suggest_transfer, suggest_view
@@ -179,8 +186,15 @@ class Scene:
         return data
 
     @staticmethod
-    def from_json(data: Any, volume: Volume | None = None) -> Scene:
+    def from_json(
+        data: Any, volume: Volume | None = None, geometry: tuple[Geometry, ...] | None = None
+    ) -> Scene:
         """Build a scene from JSON data and a volume that was loaded already.
+
+        Parameters
+        ----------
+        geometry : tuple of Geometry, optional
+            As many as the data names, loaded already; otherwise what the data names is read or traced.
 
         Raises
         ------
@@ -208,7 +222,7 @@ class Scene:
             if name == "technique":
                 values[name] = params_from_json(value)
             elif name == "geometry":
-                values[name] = ()
+                values[name] = _geometry(value) if geometry is None else geometry
             elif name in _NESTED:
                 values[name] = _nested(name, value)
             else:
@@ -227,6 +241,7 @@ class Scene:
         data = self.to_json()
         if data["volume"] and data["volume"]["path"]:
             data["volume"]["path"] = _portable(data["volume"]["path"], target)
+        data["geometry"] = [with_paths(g, lambda p: _portable(p, target)) for g in data["geometry"]]
         temporary = target.with_name(target.name + ".part")
         try:
             temporary.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
@@ -264,7 +279,7 @@ class Scene:
             ) from None
         if volume is None and isinstance(data, dict) and data.get("volume"):
             volume = _find_volume(data["volume"], source)
-        return Scene.from_json(data, volume)
+        return Scene.from_json(located(data, source.parent), volume)
 
 
 _NESTED: dict[str, type] = {
@@ -284,6 +299,22 @@ def _nested(name: str, value: Any) -> Any:
             raise SceneError(name, value, "a list is needed here")
         return tuple(from_json(_NESTED[name], v, f"{name}.{i}") for i, v in enumerate(value))
     return from_json(_NESTED[name], value, name)
+
+
+def _geometry(value: Any) -> tuple[Geometry, ...]:
+    if not isinstance(value, list):
+        raise SceneError("geometry", value, "a list is needed here")
+    return tuple(Geometry.from_json(v) for v in value)
+
+
+def located(data: Any, folder: Path) -> Any:
+    """Return a scene's JSON data in which the paths of its geometry, as kept beside the scene, lead there."""
+    if not isinstance(data, dict) or not isinstance(data.get("geometry"), list):
+        return data
+    there = [
+        with_paths(g, lambda p: p if p.startswith("sample:") else str(folder / p)) for g in data["geometry"]
+    ]
+    return {**data, "geometry": there}
 
 
 def _portable(volume_path: str, scene_path: Path) -> str:
