@@ -4,6 +4,7 @@ How the house is built::
 
     scene/        frozen data: volume, transfer function, camera, lights; checks and JSON   (numpy only)
     io/           readers; everything untrusted enters here
+    geometry/     tracts, streamlines and surfaces: readers, tracing, tubes (the only place that imports VTK)
     gpu/          the only place that calls moderngl: device, textures, targets, programs
     shaders/lib/  GLSL by concept, included by name
     techniques/   one folder a technique; `marcher` (the one ray caster) and `sweep` beside them
@@ -48,6 +49,7 @@ from .scene import (
 
 if TYPE_CHECKING:
     from .export.terms import render_terms
+    from .geometry import load_geometry, trace
     from .io import load
     from .renderer import Quality, Renderer, render
 
@@ -79,13 +81,17 @@ __all__ = [
     "Volume",
     "VolumeInfo",
     "load",
+    "load_geometry",
     "render",
     "render_terms",
+    "trace",
 ]
 
 #: Names that bring GL or readers along; imported when first used, so that ``import sfumato`` stays quick.
 _LAZY = {
     "load": ".io",
+    "load_geometry": ".geometry",
+    "trace": ".geometry",
     "render": ".renderer",
     "render_terms": ".export.terms",
     "Renderer": ".renderer",

@@ -14,11 +14,14 @@ from .color import point_colors
 from .polyline import Strand, smoothed, split, strand_of, thinned_out, without_repeats
 from .tubes import Tubes, sweep, tangents_of
 
-#: Triangles up to which tubes are round; beyond, they get fewer sides, down to `FEWEST_SIDES`.
-BUDGET_TRIANGLES = 4_000_000
+#: Level of detail: beyond so many triangles, tubes get fewer sides, then their axes fewer points. Lines are
+#: never left out (that is what the filters are for), so millions of them may still take more.
+BUDGET_TRIANGLES = 2_000_000
 MOST_SIDES, FEWEST_SIDES = 12, 4
 #: How far, in radii, a tube's axis may leave its line for the sake of fewer points: nothing that is seen.
 TOLERANCE = 0.03
+#: How far it may leave it, in radii, when there are too many points for the budget even with few sides.
+COARSEST = 0.8
 #: Meshes kept for geometries that come back (undo, other views).
 CACHE_BYTES = 1 << 30
 _CHUNK_POINTS = 100_000
@@ -95,8 +98,10 @@ def _tube_mesh(geometry: Geometry) -> Generator[float, None, Mesh]:
         run = smoothed(without_repeats(piece), geometry.smoothing)
         if len(run.points):
             parts.append(thinned_out(run, TOLERANCE * geometry.radius))
-        yield 0.05 + 0.35 * (i + 1) / len(pieces)
+        yield 0.05 + 0.25 * (i + 1) / len(pieces)
     sides = geometry.sides or automatic_sides(sum(len(p.points) for p in parts))
+    if not geometry.sides:
+        yield from _coarsened(parts, geometry.radius)
     swept, colors = [], []
     for i, part in enumerate(parts):
         tangents = tangents_of(part)
@@ -106,6 +111,16 @@ def _tube_mesh(geometry: Geometry) -> Generator[float, None, Mesh]:
         colors.append(point_colors(geometry, tangents, values)[tubes.source])
         yield 0.4 + 0.5 * (i + 1) / len(parts)
     return _joined(swept, colors)
+
+
+def _coarsened(parts: list[Strand], radius: float) -> Generator[float, None, None]:
+    """Thin lines out further, in place, as long as they take more than the budget."""
+    tolerance = TOLERANCE
+    while sum(len(p.points) for p in parts) * 2 * FEWEST_SIDES > BUDGET_TRIANGLES and tolerance < COARSEST:
+        tolerance = min(3 * tolerance, COARSEST)
+        for i, part in enumerate(parts):
+            parts[i] = thinned_out(part, tolerance * radius)
+            yield 0.3 + 0.1 * tolerance / COARSEST
 
 
 def _scalars_needed(geometry: Geometry) -> tuple[str, ...]:

@@ -118,7 +118,7 @@ def load(
         progress,
         cancel,
     )
-    with _guarded(task):
+    with guarded(task):
         task.step(0.0, "Opening")
         return finish(formats.read(task), task)
 
@@ -128,7 +128,7 @@ def find_series(
 ) -> tuple[SeriesInfo, ...]:
     """Return the DICOM series in a folder (or of a DICOM file), most slices first; empty if there is none."""
     task = Task(Path(path), progress=progress, cancel=cancel)
-    with _guarded(task):
+    with guarded(task):
         if not task.path.exists():
             raise task.error("there is no such file or folder", "check the path")
         if task.path.is_file() and not is_dicom(task.path):
@@ -139,7 +139,7 @@ def find_series(
 def guess_raw(path: str | os.PathLike[str]) -> list[RawGuess]:
     """Return ways to read a raw file whose size agrees with it, best first, for a dialog; may be empty."""
     task = Task(Path(path))
-    with _guarded(task):
+    with guarded(task):
         return raw.guess(task.path)
 
 
@@ -152,7 +152,7 @@ def describe_raw(path: str | os.PathLike[str], how: RawGuess) -> None:
         If the folder cannot be written.
     """
     task = Task(Path(path))
-    with _guarded(task):
+    with guarded(task):
         raw.describe(task.path, how)
 
 
@@ -177,7 +177,7 @@ def preview_series(
         If ``cancel`` said so.
     """
     task = Task(Path(path), cancel=cancel)
-    with _guarded(task):
+    with guarded(task):
         for key, plane in dicom.middle_slices(task.path, task):
             show(key, plane)
 
@@ -197,7 +197,7 @@ def reduce_volume(
     task = Task(Path(volume.info.path), level=1, progress=progress, cancel=cancel)
     axes = np.asarray(volume.direction) * np.asarray(volume.spacing)
     info = volume.info
-    with _guarded(task):
+    with guarded(task):
         made = finish(
             Reading(
                 Source.of(volume.data), axes, np.asarray(volume.origin), info.modality,
@@ -246,7 +246,7 @@ def load_raw(
         progress=progress,
         cancel=cancel,
     )
-    with _guarded(task):
+    with guarded(task):
         return finish(raw.source(task, RawGuess(dims, dtype, spacing, offset)), task)
 
 
@@ -290,7 +290,7 @@ def _quiet_loggers() -> Iterator[None]:
 
 
 @contextmanager
-def _guarded(task: Task) -> Iterator[None]:
+def guarded(task: Task) -> Iterator[None]:
     """Let nothing but `SfumatoError` out, and no library's warnings."""
     try:
         with warnings.catch_warnings(), _quiet_loggers():

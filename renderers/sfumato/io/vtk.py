@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ def read(task: Task) -> Reading:
     with task.path.open("rb") as stream:
         head = stream.read(4096)
     reader = _xml_reader(head, task) if head.lstrip().startswith(b"<") else _legacy_reader(head, task)
-    grid = _run(reader, task)
+    grid = run(reader, task, _check_extent)
     if re.match(rb"# vtk[^\n]*\n[^\n]*\n\s*ASCII", head, re.IGNORECASE):
         _check_words(grid, task)
     need("vtkmodules.util.numpy_support", task)
@@ -63,7 +64,19 @@ def _legacy_reader(head: bytes, task: Task) -> Any:
     return getattr(need("vtkmodules.vtkIOLegacy", task), _LEGACY[name])()
 
 
-def _run(reader: Any, task: Task) -> Any:
+def run(reader: Any, task: Task, check: Callable[[Any, Task], object] | None = None) -> Any:
+    """Run a reader of VTK on the task's file and return what it holds.
+
+    Parameters
+    ----------
+    check : callable (reader, task), optional
+        Asked before the data is read, when the reader knows what the file announces.
+
+    Raises
+    ------
+    LoadError
+        If VTK complains or there is no point in it.
+    """
     core = need("vtkmodules.vtkCommonCore", task)
     # Errors of a reader inside the reader send no events: they are only written, so that is where we listen.
     before, window = core.vtkOutputWindow.GetInstance(), core.vtkStringOutputWindow()
@@ -73,9 +86,8 @@ def _run(reader: Any, task: Task) -> Any:
     try:
         reader.SetFileName(str(task.path))
         task.step(0.0, "Reading")
-        if reader.IsA("vtkXMLReader"):
-            reader.UpdateInformation()
-            _check_extent(reader, task)
+        if check is not None:
+            check(reader, task)
         reader.AddObserver("ProgressEvent", lambda *_: _progress(reader, task))
         reader.Update()
     finally:
@@ -94,6 +106,9 @@ def _progress(reader: Any, task: Task) -> None:
 
 
 def _check_extent(reader: Any, task: Task) -> None:
+    if not reader.IsA("vtkXMLReader"):
+        return
+    reader.UpdateInformation()
     module = need("vtkmodules.vtkCommonExecutionModel", task)
     extent = reader.GetOutputInformation(0).Get(module.vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
     if not extent:

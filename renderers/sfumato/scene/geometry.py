@@ -86,6 +86,9 @@ class Geometry:
     path: str = ""
     tracing: Tracing | None = None
     kind: Annotated[str, Param("What it is", choices=("", "tracts", "streamlines", "surface"))] = ""
+    space: Annotated[
+        str, Param("Space of a file that does not name it; empty: LPS", choices=("", "LPS", "RAS"))
+    ] = ""
     name: str = field(default="", compare=False)
     notices: tuple[str, ...] = field(default=(), compare=False)
     visible: Annotated[bool, Param("Whether it is drawn", label="Visible", tab="view")] = True

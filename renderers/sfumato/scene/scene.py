@@ -304,7 +304,9 @@ def _nested(name: str, value: Any) -> Any:
 def _geometry(value: Any) -> tuple[Geometry, ...]:
     if not isinstance(value, list):
         raise SceneError("geometry", value, "a list is needed here")
-    return tuple(Geometry.from_json(v) for v in value)
+    from ..geometry import load_known
+
+    return tuple(load_known(v, f"geometry.{i}") for i, v in enumerate(value))
 
 
 def located(data: Any, folder: Path) -> Any:

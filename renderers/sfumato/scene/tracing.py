@@ -75,7 +75,7 @@ class Tracing:
         Param("Longest streamline; 0: ten times the field's longest edge", label="Length", unit="mm", ge=0),
     ] = 0.0
     step: Annotated[
-        float, Param("First step of the integration", label="Step", unit="voxel", ge=0.01, le=10)
+        float, Param("Longest step of the integration", label="Step", unit="voxel", ge=0.01, le=10)
     ] = 0.5
     direction: Annotated[
         str, Param("Which way from the seeds", label="Direction", choices=("both", "forward", "backward"))
