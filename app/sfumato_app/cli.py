@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import sys
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
@@ -38,7 +39,8 @@ app = App(
 @app.default
 def window(
     path: Annotated[
-        str | None, Parameter(help="A volume, a DICOM folder, a scene file, or a picture of ours.")
+        str | None,
+        Parameter(help="A volume, a DICOM folder, tracts, a mesh, a scene file, or a picture of ours."),
     ] = None,
     /,
 ) -> int:
@@ -50,7 +52,9 @@ def window(
 
 @app.command
 def render(
-    path: Annotated[str, Parameter(help="A volume, a DICOM folder, a scene file, or a picture of ours.")],
+    path: Annotated[
+        str, Parameter(help="A volume, a DICOM folder, tracts, a mesh, a scene file, or a picture of ours.")
+    ],
     /,
     *,
     output: Annotated[
@@ -65,6 +69,14 @@ def render(
     volume: Annotated[
         str | None, Parameter(help="The volume to use instead of the one that a scene or picture names.")
     ] = None,
+    geometry: Annotated[
+        list[str] | None,
+        Parameter(
+            negative="",
+            consume_multiple=False,
+            help="Tracts or a mesh to add: TRK, TCK, TRX, VTP, VTK, STL, PLY, OBJ (repeatable).",
+        ),
+    ] = None,
     file: PrintFlags = PrintFlags(),  # noqa: B008
     read: ReadFlags = ReadFlags(),  # noqa: B008
     flags: SceneFlags = SceneFlags(),  # noqa: B008
@@ -72,14 +84,16 @@ def render(
 ) -> None:
     """Draw a picture without a window."""
     from .drawing import draw, target_of
-    from .opening import is_scene, open_scene
+    from .opening import geometry_notices, is_scene, open_scene, with_geometry
 
     spec = file.spec()
     target, linear = target_of(path, output, linear)
     if linear and file.only_for_print:
         raise UsageError(f"{', '.join(file.only_for_print)}: not for linear pictures")
     aspect = spec.size[0] / spec.size[1]
-    scene = open_scene(path, volume, read)
+    scene = with_geometry(open_scene(path, volume, read), geometry or [])
+    for notice in geometry_notices(scene):
+        print(notice, file=sys.stderr)
     if not is_scene(path) and scene.camera is not None:
         scene = scene.with_(camera=widened(scene.camera, aspect))
     scene = changed(scene, flags, own, aspect)
@@ -88,7 +102,9 @@ def render(
 
 @app.command
 def info(
-    path: Annotated[str, Parameter(help="A volume, a DICOM folder, a scene file, or a picture of ours.")],
+    path: Annotated[
+        str, Parameter(help="A volume, a DICOM folder, tracts, a mesh, a scene file, or a picture of ours.")
+    ],
     /,
     *,
     gpu: Annotated[
@@ -99,9 +115,11 @@ def info(
     ] = False,
     read: ReadFlags = ReadFlags(),  # noqa: B008
 ) -> None:
-    """Tell what a volume is; of a scene file or a picture of ours, its scene."""
+    """Tell what a volume, tracts or a mesh are; of a scene file or a picture of ours, its scene."""
+    from sfumato.geometry import is_geometry
+
     from .opening import is_scene, open_scene, open_volume
-    from .tables import print_series, print_volume, scene_data
+    from .tables import print_geometry, print_series, print_volume, scene_data
 
     if gpu:
         from .gpu_listing import print_gpu
@@ -109,6 +127,8 @@ def info(
         print_gpu(open_scene(path, None, read), GPU_SIZE)
     elif is_scene(path):
         print(json.dumps(scene_data(path), indent=1))
+    elif is_geometry(path):
+        print_geometry(path, sfumato.load_geometry(path))
     else:
         print_volume(path, open_volume(path, read))
         if read.series is None and Path(path).is_dir():

@@ -11,6 +11,7 @@ import sfumato
 from sfumato import Scene, SceneError
 from sfumato.export.linear import LINEAR_SUFFIXES, write_linear
 from sfumato.export.picture import STREAMS, PictureSpec, write_picture
+from sfumato.techniques import technique_for
 
 from .errors import UsageError
 from .opening import SAMPLE
@@ -63,6 +64,8 @@ def draw(scene: Scene, spec: PictureSpec, target: Path, linear: bool = False) ->
     """
     if scene.volume is None and not scene.geometry:
         raise SceneError("volume", None, "the scene shows nothing; name a volume")
+    if scene.volume is None and not technique_for(scene.technique).geometry:
+        raise SceneError("technique", scene.technique_id, "without a volume, one that draws geometry")
     if not target.parent.is_dir():
         raise sfumato.SfumatoError(f"{target}: there is no folder {target.parent}")
     began = time.perf_counter()

@@ -105,6 +105,7 @@ def declared_parameters() -> dict[str, _Declared]:
         "output",
         "linear",
         "volume",
+        "geometry",
         "path",
         "debug",
     }
@@ -262,6 +263,13 @@ def view_of(scene: Scene, view: str, aspect: float) -> Camera:
     from sfumato.scene.presets.visible import outline, seen_cells
 
     volume, transfer, camera = scene.volume, scene.transfer, scene.camera
+    if camera is not None and volume is None and scene.geometry:
+        points = np.concatenate([g.bounds for g in scene.geometry])
+        box = np.array([points.min(axis=0), points.max(axis=0)])
+        return Camera.fit(
+            box, view, aspect=aspect,
+            view_angle=camera.view_angle, parallel_projection=camera.parallel_projection,
+        )  # fmt: skip
     if volume is None or transfer is None or camera is None:
         raise SceneError("camera", view, "a standard view needs a volume")
     cells = seen_cells(volume, transfer)

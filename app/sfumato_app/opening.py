@@ -11,6 +11,7 @@ from cyclopts import Group, Parameter
 import sfumato
 from sfumato import LoadError, Scene, Volume
 from sfumato.export.png import carries_scene
+from sfumato.techniques import technique_for, technique_with_geometry
 
 from .numbers import whole
 
@@ -75,8 +76,51 @@ def open_volume(path: str, read: ReadFlags | None = None) -> Volume:
     return sfumato.load(path, **(read.options() if read else {}))
 
 
+def new_scene(path: str, volume_path: str | None = None, read: ReadFlags | None = None) -> Scene:
+    """Return a new scene of a volume, or of tracts or a mesh (on a volume, if one is named)."""
+    from sfumato.geometry import is_geometry
+
+    if not is_geometry(path):
+        return Scene(volume=open_volume(volume_path or path, read), background=BACKGROUND, frames=FRAMES)
+    volume = open_volume(volume_path, read) if volume_path else None
+    scene = Scene(
+        volume=volume, geometry=(sfumato.load_geometry(path),), background=BACKGROUND, frames=FRAMES
+    )
+    return drawing_geometry(scene)
+
+
+def with_geometry(scene: Scene, paths: list[str]) -> Scene:
+    """Return the scene with tracts and meshes from files added, drawn by a technique that can.
+
+    Raises
+    ------
+    LoadError
+        If one cannot be read.
+    """
+    more = tuple(sfumato.load_geometry(path) for path in paths)
+    return drawing_geometry(scene.with_(geometry=(*scene.geometry, *more))) if more else scene
+
+
+def drawing_geometry(scene: Scene) -> Scene:
+    """Return the scene with a technique that draws its geometry; its own, if that does."""
+    if technique_for(scene.technique).geometry or not technique_with_geometry():
+        return scene
+    return scene.with_(technique=technique_with_geometry())
+
+
+def geometry_notices(scene: Scene) -> list[str]:
+    """Return what was left out of the scene's geometry, and what of it lies outside the volume."""
+    from sfumato.geometry import outside_notice
+
+    told = []
+    for geometry in scene.geometry:
+        outside = outside_notice(geometry, scene.volume.texture_from_world) if scene.volume else ""
+        told += [f"{geometry.name or geometry.kind}: {text}" for text in (*geometry.notices, outside) if text]
+    return told
+
+
 def open_scene(path: str, volume_path: str | None = None, read: ReadFlags | None = None) -> Scene:
-    """Read a scene with its volume, or a volume as a new scene with a fitting transfer function and view.
+    """Read a scene, or a volume, tracts or a mesh as a new scene with a fitting transfer function and view.
 
     Parameters
     ----------
@@ -91,7 +135,7 @@ def open_scene(path: str, volume_path: str | None = None, read: ReadFlags | None
         If something cannot be read, or holds what a scene may not hold.
     """
     if not is_scene(path):
-        return Scene(volume=open_volume(volume_path or path, read), background=BACKGROUND, frames=FRAMES)
+        return new_scene(path, volume_path, read)
     volume = open_volume(volume_path, read) if volume_path else None
     if Path(path).suffix.lower() == SCENE_SUFFIX:
         return Scene.open(path, volume)

@@ -9,8 +9,9 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from sfumato import Scene, Volume
+from sfumato import Geometry, Lines, Scene, Volume
 from sfumato.scene import Field, fields_of
+from sfumato.scene.geometry import value_range
 from sfumato.techniques import Technique, techniques
 
 from .opening import SCENE_SUFFIX
@@ -66,6 +67,34 @@ def print_volume(path: str, volume: Volume) -> None:
     _console().print(table)
 
 
+def geometry_rows(geometry: Geometry) -> list[tuple[str, str]]:
+    """Return what there is to say about tracts or a mesh, as names and values."""
+    shape = geometry.shape
+    rows = [("kind", geometry.kind)]
+    if isinstance(shape, Lines):
+        low, mean, high = shape.lengths.min(), shape.lengths.mean(), shape.lengths.max()
+        rows += [("lines", str(shape.count)), ("lengths", f"{low:.4g} to {high:.4g} mm, mean {mean:.4g} mm")]
+    else:
+        rows.append(("triangles", str(shape.count)))
+    rows += [
+        ("points", str(len(shape.points))),
+        ("from", "{:.5g}, {:.5g}, {:.5g} mm (LPS)".format(*shape.bounds[0])),
+        ("to", "{:.5g}, {:.5g}, {:.5g} mm".format(*shape.bounds[1])),
+        ("memory", f"{shape.nbytes / 2**20:.1f} MiB"),
+    ]
+    for name in geometry.scalar_names:
+        rows.append(("scalar", "{}: {:g} to {:g}".format(name, *value_range(geometry.scalar_values(name)))))
+    return rows + [("notice", text) for text in geometry.notices]
+
+
+def print_geometry(path: str, geometry: Geometry) -> None:
+    """Print what there is to say about tracts or a mesh."""
+    table = Table(show_header=False, box=None, title=geometry.name or path, title_justify="left")
+    for name, value in geometry_rows(geometry):
+        table.add_row(name, value)
+    _console().print(table)
+
+
 def print_series(folder: str) -> None:
     """Print the DICOM series in a folder, where there are several to choose from."""
     from sfumato.io import find_series
@@ -103,7 +132,8 @@ def scene_data(path: str) -> dict[str, Any]:
             raise LoadError(path, error.strerror or str(error), "check the path") from None
         except (ValueError, RecursionError) as error:
             raise LoadError(path, f"not a scene file ({error})", "open a .sfumato file") from None
-    Scene.from_json(data)
+    # What its geometry shows lies in other files: that is not what is asked here.
+    Scene.from_json({**data, "geometry": []} if isinstance(data, dict) else data)
     return data
 
 

@@ -21,6 +21,7 @@ import numpy as np
 
 from ..errors import LoadError, SceneError
 from ..scene import Scene, Volume
+from ..scene.geometry import with_paths
 from .atomic import replacing
 from .streams import KEYWORD, PngStream
 from .tiff_text import MAGIC, MAX_TEXT, is_tiff_of_ours, read_tiff_text
@@ -72,9 +73,10 @@ def scene_text(scene: Scene) -> str:
     from .. import __version__
 
     data = scene.to_json()
-    for part in [data["volume"], *data["geometry"]]:
-        if isinstance(part, dict) and part.get("path"):
-            part["path"] = "" if _may_name_a_patient(part["path"]) else _file_name(part["path"])
+    volume = data["volume"]
+    if isinstance(volume, dict) and volume.get("path"):
+        volume["path"] = "" if _may_name_a_patient(volume["path"]) else _file_name(volume["path"])
+    data["geometry"] = [with_paths(part, _file_name) for part in data["geometry"]]
     return json.dumps({"program": f"sfumato {__version__}", "scene": data})
 
 
@@ -166,6 +168,13 @@ def open_png(path: str | os.PathLike[str], volume: Volume | None = None) -> Scen
     data = read_scene_data(path)
     if volume is None and data.get("volume"):
         volume = _volume_beside(Path(path), data["volume"])
+    if isinstance(data.get("geometry"), list):
+        # As with the volume: only ever names beside the picture.
+        folder = Path(path).parent
+        data["geometry"] = [
+            with_paths(g, lambda p: p if p.startswith(SAMPLE) else str(folder / _file_name(p)))
+            for g in data["geometry"]
+        ]
     return Scene.from_json(data, volume)
 
 

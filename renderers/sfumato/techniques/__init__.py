@@ -8,6 +8,24 @@ each light reaches a point, and the ray caster does the rest (skipping, early te
 classification). The occlusion methods get that from a *sweep* over slices (`sweep`), batch by batch.
 """
 
-from .registry import Painter, Technique, id_of, params_from_json, params_of, technique_for, techniques
+from .registry import (
+    Painter,
+    Technique,
+    id_of,
+    params_from_json,
+    params_of,
+    technique_for,
+    technique_with_geometry,
+    techniques,
+)
 
-__all__ = ["Painter", "Technique", "id_of", "params_from_json", "params_of", "technique_for", "techniques"]
+__all__ = [
+    "Painter",
+    "Technique",
+    "id_of",
+    "params_from_json",
+    "params_of",
+    "technique_for",
+    "technique_with_geometry",
+    "techniques",
+]

@@ -54,6 +54,8 @@ class Technique:
         Kinds of lamps that it lights as what they are; others it takes for parallel light from their place.
     ambient_of_lamps : bool
         Whether its parameter ``ambient`` is a share of each lamp, instead of a light of its own.
+    geometry : bool
+        Whether it draws the scene's geometry.
     options : dict
         Constants for the painter, where one painter serves several techniques.
     """
@@ -69,6 +71,7 @@ class Technique:
     max_lights: int = 4
     kinds: tuple[str, ...] = ("directional",)
     ambient_of_lamps: bool = False
+    geometry: bool = False
     options: dict[str, Any] = field(default_factory=dict, compare=False)
 
     def make_painter(self, device: Any) -> Painter:
@@ -96,6 +99,11 @@ def techniques() -> dict[str, Technique]:
         for technique in importlib.import_module(f".{folder}", __package__).TECHNIQUES:
             found[technique.id] = technique
     return found
+
+
+def technique_with_geometry() -> str:
+    """Return the id of the first technique that draws geometry, or nothing."""
+    return next((t.id for t in techniques().values() if t.geometry), "")
 
 
 def technique_for(params: TechniqueParams) -> Technique:
