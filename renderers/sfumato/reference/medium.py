@@ -43,6 +43,8 @@ class Medium:
         self.index_from_world[:3, 3] -= 0.5
         sampled = transfer.evaluate(self.low + self.range * np.arange(CELLS + 1) / CELLS)
         self.tau = transfer.extinction(sampled[:, 3], volume.unit_distance)
+        #: Distance in mm to which opacities refer.
+        self.unit_distance = transfer.unit_distance or volume.unit_distance
         #: tau, tau * colour, tau * emission at the table's nodes; shape (CELLS + 1, 7).
         self.density = self.tau[:, None] * np.insert(sampled[:, [0, 1, 2, 4, 5, 6]], 0, 1.0, axis=1)
 
