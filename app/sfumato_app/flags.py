@@ -40,7 +40,10 @@ def _help(field: Field) -> str:
     assert param is not None
     # Choices and on/off are shown by the parser.
     told = bool(param.choices) or field.type is bool
-    return param.meaning if told else f"{param.meaning} ({param.allowed().removeprefix('allowed: ')})"
+    if told:
+        return param.meaning
+    unset = f"; unless set: {param.none_label}" if field.optional and param.none_label else ""
+    return f"{param.meaning} ({param.allowed().removeprefix('allowed: ')}{unset})"
 
 
 def _light_flag(name: str) -> Any:
@@ -113,10 +116,10 @@ def declared_parameters() -> dict[str, _Declared]:
     ambiguous: set[str] = set(taken)
     for technique in techniques().values():
         for name, field in fields_of(technique.params).items():
-            if field.param is None or field.type not in (int, float, bool, str):
+            if field.param is None or field.kind not in (int, float, bool, str):
                 continue
             known = found.get(name)
-            if known and (known.field.type, known.field.param.choices) != (field.type, field.param.choices):  # type: ignore[union-attr]
+            if known and (known.field.kind, known.field.param.choices) != (field.kind, field.param.choices):  # type: ignore[union-attr]
                 ambiguous.add(name)
             found[name] = _Declared(field, (*(known.owners if known else ()), technique.id))
     return {name: declared for name, declared in found.items() if name not in ambiguous}
@@ -125,7 +128,7 @@ def declared_parameters() -> dict[str, _Declared]:
 def _flag_type(declared: _Declared) -> Any:
     assert declared.field.param is not None
     choices = declared.field.param.choices
-    kind = Literal[tuple(choices)] if choices else declared.field.type
+    kind = Literal[tuple(choices)] if choices else declared.field.kind
     words = f"{_help(declared.field)}; {', '.join(declared.owners)}"
     name = "--" + declared_flag(declared.field.name)
     converter = whole if kind is int else None

@@ -144,8 +144,9 @@ def _parameter_data(field: Field) -> dict[str, Any]:
         "name": field.name,
         "meaning": param.meaning,
         "unit": param.unit,
-        "allowed": param.allowed().removeprefix("allowed: "),
+        "allowed": param.allowed().removeprefix("allowed: ") + (", or none" if field.optional else ""),
         "default": field.default,
+        "none": param.none_label,
         "source": param.source,
     }
 
@@ -175,6 +176,7 @@ def print_techniques() -> None:
         table.add_row(technique["id"], technique["summary"], "", "", "", technique["source"], style="bold")
         for p in technique["parameters"]:
             allowed = str(p["allowed"]).removeprefix("one of ")
-            table.add_row(f"  {p['name']}", p["meaning"], p["unit"], allowed, str(p["default"]), p["source"])
+            default = f"none ({p['none']})" if p["default"] is None and p["none"] else str(p["default"])
+            table.add_row(f"  {p['name']}", p["meaning"], p["unit"], allowed, default, p["source"])
         table.add_section()
     _console().print(table)

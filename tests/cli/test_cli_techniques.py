@@ -60,11 +60,11 @@ def another_value(field):
     param = field.param
     if param.choices:
         return next(c for c in param.choices if c != field.default)
-    if field.type is bool:
+    if field.kind is bool:
         return not field.default
     low, high = param.soft or (param.ge, param.le)
-    value = field.type(low + 0.75 * (high - low))
-    return value if value != field.default else field.type(low + 0.5 * (high - low))
+    value = field.kind(low + 0.75 * (high - low))
+    return value if value != field.default else field.kind(low + 0.5 * (high - low))
 
 
 def test_a_technique_keeps_its_parameters_unless_another_is_chosen():

@@ -37,13 +37,15 @@ def other_value(field: Field) -> Any:
     """Return an allowed value that is not the default."""
     param = field.param
     assert param is not None
-    if field.type is bool:
+    if field.kind is bool:
         return not field.default
     if param.choices:
         return next(c for c in param.choices if c != field.default)
-    if field.type is int:
-        return field.default + 1 if param.admits(field.default + 1) else field.default - 1
-    for candidate in (0.9 * field.default + 0.01, 1.1 * field.default):
+    if field.kind is int:
+        default = field.default if field.default is not None else int((param.soft or (1, 2))[0])
+        return default + 1 if param.admits(default + 1) else default - 1
+    default = field.default if field.default is not None else (param.soft or (1.0, 2.0))[1]
+    for candidate in (0.9 * default + 0.01, 1.1 * default):
         if param.admits(candidate) and candidate != field.default:
             return candidate
     raise AssertionError(f"no other value for {field.name}")
@@ -132,20 +134,22 @@ def test_parameter_is_checked_at_its_bounds(technique: Technique, field: Field) 
         return bool(getattr(made, field.name) == value)
 
     assert takes(field.default)
-    if field.type is bool or param.choices:
+    if field.kind is bool or param.choices:
         assert all(takes(choice) for choice in param.choices or (False, True))
         assert not takes("nonsense")
         assert not takes(None)
         return
     assert (param.ge, param.gt) != (None, None), "a number needs a lower bound"
     assert (param.le, param.lt) != (None, None), "a number needs an upper bound"
-    smallest = 1 if field.type is int else 1e-9
+    smallest = 1 if field.kind is int else 1e-9
     lower, upper = ((param.ge, -1, True), (param.gt, -1, False)), ((param.le, 1, True), (param.lt, 1, False))
     for bound, outwards, inclusive in (*lower, *upper):
         if bound is not None:
-            assert takes(type(field.default)(bound)) == inclusive
+            assert takes(field.kind(bound)) == inclusive
             assert not takes(bound + outwards * smallest * max(1, abs(bound)))
-    assert not any(takes(v) for v in (math.nan, math.inf, -math.inf, "1", True, None))
+    assert not any(takes(v) for v in (math.nan, math.inf, -math.inf, "1", True))
+    assert takes(None) == field.optional
+    assert bool(param.none_label) == field.optional, "no value means something"
     if param.soft:
         assert param.soft[0] < param.soft[1]
         assert all(param.admits(v) for v in param.soft)

@@ -14,6 +14,13 @@ from .params import Param, check
 
 Vec3 = tuple[float, float, float]
 
+KINDS = ("directional", "point", "spot", "area")
+SHAPES = ("rectangle", "sphere", "tube")
+#: No lamp is farther away or larger than this, in mm: what 32-bit numbers on the GPU still tell apart.
+FARTHEST = 1e6
+#: Shortest vector that still has a direction.
+SHORTEST = 1e-6
+
 #: Basis in which tilt and rotation of a light attached to the patient are meant: the standard front view.
 PATIENT_BASIS = Basis(right=(1.0, 0.0, 0.0), up=(0.0, 0.0, 1.0), back=(0.0, -1.0, 0.0))
 
@@ -28,18 +35,21 @@ class Light:
     ``viewer`` it turns with the camera; attached to the ``patient`` the angles refer to the standard
     front view and the lamp stays where it is when the camera moves.
 
-    ``point``, ``spot`` and ``area`` lights have a place in world space; techniques that know parallel
-    light alone treat them as parallel light from that place (see `towards`).
+    ``point``, ``spot`` and ``area`` lights have a place in world space and stay there whatever the camera
+    does; techniques that know parallel light alone treat them as parallel light from that place (see
+    `towards`). A point lamp is a small ball. A spot's beam is full up to ``spread - edge`` from its
+    direction and dark from ``spread`` on. An area lamp is a ``rectangle`` that shines to the side its
+    direction says, a ``sphere``, or a ``tube`` along its axis. What reaches a point at a distance is told
+    by `sfumato.scene.lamps`.
 
     Raises
     ------
     SceneError
-        If a value is out of range, or tilt and aperture put the light neither before nor behind the subject.
+        If a value is out of range, tilt and aperture put the light neither before nor behind the subject,
+        or a direction that the lamp needs has no length.
     """
 
-    kind: Annotated[str, Param("Kind of lamp", choices=("directional", "point", "spot", "area"))] = (
-        "directional"
-    )
+    kind: Annotated[str, Param("Kind of lamp", choices=KINDS)] = "directional"
     tilt: Annotated[
         float,
         Param(
@@ -97,14 +107,75 @@ class Light:
     attached: Annotated[str, Param("What the lamp moves with", choices=("viewer", "patient"))] = "viewer"
     name: str = "key"
     enabled: bool = True
-    position: Annotated[Vec3, Param("Place of the lamp, world space", unit="mm")] = (0.0, 0.0, 0.0)
-    radius: Annotated[float, Param("Radius of a point or spot lamp", unit="mm", gt=0)] = 1.0
-    direction: Annotated[Vec3, Param("Direction in which a spot or area lamp shines")] = (0.0, 1.0, 0.0)
-    spread: Annotated[float, Param("Half angle of a spot's beam", unit="deg", gt=0, lt=90)] = 30.0
-    size: Annotated[tuple[float, float], Param("Width and height of an area lamp", unit="mm", gt=0)] = (
-        10.0,
-        10.0,
-    )
+    position: Annotated[
+        Vec3, Param("Place of the lamp, world space", unit="mm", ge=-FARTHEST, le=FARTHEST)
+    ] = (0.0, 0.0, 0.0)
+    radius: Annotated[
+        float,
+        Param(
+            "Radius of a point, spot, sphere or tube lamp: the larger, the softer its shadows",
+            label="Radius",
+            unit="mm",
+            gt=0,
+            le=FARTHEST,
+            soft=(0.1, 50),
+            stale="light",
+            tab="light",
+        ),
+    ] = 1.0
+    direction: Annotated[
+        Vec3, Param("Direction in which a spot or a rectangle shines", ge=-FARTHEST, le=FARTHEST)
+    ] = (0.0, 1.0, 0.0)
+    spread: Annotated[
+        float,
+        Param(
+            "Half angle of a spot's beam: from there on it is dark",
+            label="Beam",
+            unit="deg",
+            gt=0,
+            lt=90,
+            soft=(1, 80),
+            stale="light",
+            tab="light",
+        ),
+    ] = 30.0
+    edge: Annotated[
+        float,
+        Param(
+            "Angle over which a spot's beam fades, inwards from where it is dark",
+            label="Beam edge",
+            unit="deg",
+            ge=0,
+            le=90,
+            soft=(0, 30),
+            stale="light",
+            tab="light",
+            level="more",
+        ),
+    ] = 5.0
+    shape: Annotated[str, Param("What an area lamp is", choices=SHAPES)] = "rectangle"
+    size: Annotated[
+        tuple[float, float],
+        Param("Width and height of a rectangle; the first is a tube's length", unit="mm", gt=0, le=FARTHEST),
+    ] = (10.0, 10.0)
+    axis: Annotated[
+        Vec3, Param("Direction of a tube, or of a rectangle's width", ge=-FARTHEST, le=FARTHEST)
+    ] = (1.0, 0.0, 0.0)
+    reach: Annotated[
+        float | None,
+        Param(
+            "Distance at which the light has halved; none: it is as bright everywhere",
+            label="Reach",
+            unit="mm",
+            gt=0,
+            le=FARTHEST,
+            soft=(1, 500),
+            stale="light",
+            tab="light",
+            level="more",
+            none_label="everywhere",
+        ),
+    ] = None
     solo: bool = False
 
     def __post_init__(self) -> None:
@@ -116,8 +187,30 @@ class Light:
                 f"with aperture {self.aperture:g} deg allowed: 0 <= tilt < {90 - self.aperture:g} (before the subject) "
                 f"or {90 + self.aperture:g} < tilt <= 180 (behind it)",
             )
-        if self.kind in ("spot", "area") and not any(self.direction):
+        if self.needs_direction and not math.hypot(*self.direction) > SHORTEST:
             raise SceneError("direction", self.direction, "a direction of non-zero length is needed")
+        if self.kind == "area" and self.shape == "tube" and not math.hypot(*self.axis) > SHORTEST:
+            raise SceneError("axis", self.axis, "a direction of non-zero length is needed")
+
+    @property
+    def placed(self) -> bool:
+        """Whether the lamp has a place in the world."""
+        return self.kind != "directional"
+
+    @property
+    def needs_direction(self) -> bool:
+        """Whether the lamp shines to one side."""
+        return self.kind == "spot" or (self.kind == "area" and self.shape == "rectangle")
+
+    @property
+    def sides(self) -> tuple[np.ndarray, np.ndarray]:
+        """Unit vectors along a rectangle's width and height; the width follows ``axis`` as far as it can."""
+        shines = np.asarray(self.direction) / math.hypot(*self.direction)
+        width = np.asarray(self.axis) - shines * float(np.dot(shines, self.axis))
+        if np.linalg.norm(width) <= SHORTEST * max(1.0, math.hypot(*self.axis)):
+            width = np.cross(shines, np.eye(3)[int(np.argmin(np.abs(shines)))])
+        width = width / np.linalg.norm(width)
+        return width, np.cross(shines, width)
 
     def towards(self, basis: Basis, target: Vec3) -> np.ndarray:
         """Return the unit vector from the subject towards the light, world space.

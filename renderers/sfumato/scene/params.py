@@ -96,6 +96,18 @@ class Field:
     param: Param | None
     default: Any
 
+    @property
+    def optional(self) -> bool:
+        """Whether it may have no value."""
+        return _is_union(self.type) and type(None) in typing.get_args(self.type)
+
+    @property
+    def kind(self) -> Any:
+        """The type that a value has, if there is one."""
+        if not self.optional:
+            return self.type
+        return next(k for k in typing.get_args(self.type) if k is not type(None))
+
 
 def fields_of(cls: type) -> dict[str, Field]:
     """Return the fields of a frozen dataclass by name, with the parameters declared on them."""
@@ -192,7 +204,13 @@ def _coerce_union(value: Any, hint: Any, path: str, param: Param | None) -> Any:
     for kind in rest:
         if isinstance(kind, type) and dataclasses.is_dataclass(kind) and isinstance(value, kind):
             return value
-    return coerce(value, rest[0], path, param)
+    try:
+        return coerce(value, rest[0], path, param)
+    except SceneError as error:
+        if param is None or type(None) not in kinds:
+            raise
+        meaning = f" ({param.none_label})" if param.none_label else ""
+        raise SceneError(error.path, error.value, f"{error.allowed}, or none{meaning}") from None
 
 
 def check(instance: Any, path: str = "") -> None:

@@ -87,19 +87,22 @@ def parse_setting(scene: Scene, path: str, text: str) -> Any:
     except ValueError:
         value = text
     node: Any = scene
+    optional = False
     for i, name in enumerate(path.split(".")):
         where = ".".join(path.split(".")[: i + 1])
         if isinstance(node, tuple) and name.isdigit() and int(name) < len(node):
-            node, hint, param = node[int(name)], Any, None
+            node, hint, param, optional = node[int(name)], Any, None, False
         elif (
             dataclasses.is_dataclass(node) and not isinstance(node, _LEAVES) and name in fields_of(type(node))
         ):
             f = fields_of(type(node))[name]
-            node, hint, param = getattr(node, name), f.type, f.param
+            node, hint, param, optional = getattr(node, name), f.type, f.param, f.optional
         else:
             raise SceneError(where, text, "there is no such field in the scene")
     if path == "technique":
         return value
+    if optional and isinstance(value, str) and value.lower() == "none":
+        return None
     if isinstance(node, (np.ndarray, *_LEAVES)):
         raise SceneError(path, text, "this cannot be set")
     return coerce(tuple(value) if isinstance(value, list) else value, hint, path, param)

@@ -23,7 +23,8 @@ from .volume import Volume
 
 #: Version of the JSON form; a reader refuses newer ones.
 FORMAT_VERSION = 1
-MAX_LIGHTS = 4
+#: A technique may use fewer: the first of those that shine.
+MAX_LIGHTS = 16
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Scene:
     camera : Camera, optional
         If not given, the front view of what the transfer function shows.
     lights : sequence of Light
-        Up to four.
+        Up to sixteen; a technique uses as many as it can, the first that shine.
     technique : str or TechniqueParams
         An id (see ``sfumato techniques``) or a technique's parameter object.
     step : float
@@ -141,8 +142,10 @@ class Scene:
 
     @property
     def active_lights(self) -> tuple[Light, ...]:
-        """The lights that shine (see `shining`)."""
-        return shining(self.lights)
+        """The lights that shine (see `shining`), as many of them as the technique can use."""
+        from ..techniques import technique_for
+
+        return shining(self.lights)[: technique_for(self.technique).max_lights]
 
     def light_angles(self) -> tuple[tuple[float, float], ...]:
         """Tilt and rotation in degrees of each active light, as the camera sees it."""
