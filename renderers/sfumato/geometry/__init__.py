@@ -7,13 +7,14 @@
 `field`            vector fields;  `seeding`: seeds;  `streamlines`: vtkStreamTracer
 `polyline`         filters, B-spline, thinning out: all lines at once
 `tubes`            the sweep;  `color`: colours of points;  `meshing`: all of it, kept
-`known`            what a scene names
+`known`            what a scene names;  `color_bar`: what a picture needs to draw one
 =================  ==============================================================================
 
 The only place of the core that may import VTK or PyVista, and only inside functions: a scene without
 geometry never pays for them.
 """
 
+from .color_bar import ColorBar, color_bar, color_bars
 from .field import VectorField, has_vectors, load_field
 from .known import load_known
 from .load import SUFFIXES, is_geometry, load_geometry, outside_notice
@@ -23,8 +24,11 @@ from .streamlines import trace
 
 __all__ = [
     "SUFFIXES",
+    "ColorBar",
     "VectorField",
     "build",
+    "color_bar",
+    "color_bars",
     "has_vectors",
     "is_geometry",
     "kept_lines",

@@ -19,9 +19,9 @@ from .tubes import Tubes, sweep, tangents_of
 BUDGET_TRIANGLES = 2_000_000
 MOST_SIDES, FEWEST_SIDES = 12, 4
 #: How far, in radii, a tube's axis may leave its line for the sake of fewer points: nothing that is seen.
-TOLERANCE = 0.03
+TOLERANCE = 0.05
 #: How far it may leave it, in radii, when there are too many points for the budget even with few sides.
-COARSEST = 0.8
+COARSEST = 0.5
 #: Meshes kept for geometries that come back (undo, other views).
 CACHE_BYTES = 1 << 30
 _CHUNK_POINTS = 100_000
@@ -114,13 +114,12 @@ def _tube_mesh(geometry: Geometry) -> Generator[float, None, Mesh]:
 
 
 def _coarsened(parts: list[Strand], radius: float) -> Generator[float, None, None]:
-    """Thin lines out further, in place, as long as they take more than the budget."""
-    tolerance = TOLERANCE
-    while sum(len(p.points) for p in parts) * 2 * FEWEST_SIDES > BUDGET_TRIANGLES and tolerance < COARSEST:
-        tolerance = min(3 * tolerance, COARSEST)
-        for i, part in enumerate(parts):
-            parts[i] = thinned_out(part, tolerance * radius)
-            yield 0.3 + 0.1 * tolerance / COARSEST
+    """Thin lines out further, in place, if they take more than the budget even with few sides."""
+    if sum(len(p.points) for p in parts) * 2 * FEWEST_SIDES <= BUDGET_TRIANGLES:
+        return
+    for i, part in enumerate(parts):
+        parts[i] = thinned_out(part, COARSEST * radius)
+        yield 0.3 + 0.1 * (i + 1) / len(parts)
 
 
 def _scalars_needed(geometry: Geometry) -> tuple[str, ...]:
@@ -147,9 +146,12 @@ def _joined(swept: list[Tubes], colors: list[np.ndarray]) -> Mesh:
         nothing = np.empty((0, 3), np.float32)
         return Mesh(nothing, nothing, nothing.astype(np.uint32), nothing)
     starts = np.cumsum([0] + [len(t.points) for t in swept[:-1]])
-    return Mesh(
+    arrays = (
         np.concatenate([t.points for t in swept]),
         np.concatenate([t.normals for t in swept]),
         np.concatenate([t.triangles + np.uint32(s) for t, s in zip(swept, starts, strict=True)]),
         np.concatenate(colors),
     )
+    for array in arrays:
+        array.flags.writeable = False  # a mesh takes them as they are, then, without a copy
+    return Mesh(*arrays)

@@ -13,6 +13,9 @@ import numpy as np
 from ..scene.geometry import Geometry, Roi
 from ..scene.shapes import Lines
 
+#: A round of thinning out that takes a smaller part of the points than this is the last.
+FEW = 0.03
+
 
 @dataclass(frozen=True)
 class Strand:
@@ -131,9 +134,9 @@ def _spline_weights(t: float) -> tuple[float, float, float, float]:
 def thinned_out(strand: Strand, tolerance: float, rounds: int = 4) -> Strand:
     """Leave out points that lie nearer than a tolerance to the chord of their neighbours.
 
-    Every second point at most goes in a round, so that neighbours are never left out together; the error
-    of all rounds together stays within the tolerance. Values that bend by more than 1 % of their range keep
-    their point too.
+    Every second point at most goes in a round, so that neighbours are never left out together; each round
+    may move the line by half of the tolerance, the later ones rarely where an earlier one did. Values that
+    bend by more than 1 % of their range keep their point too.
 
     Parameters
     ----------
@@ -148,10 +151,12 @@ def thinned_out(strand: Strand, tolerance: float, rounds: int = 4) -> Strand:
         odd = np.flatnonzero(inner & (number % 2 == 1))
         if not len(odd):
             return strand
-        dropped = odd[_straight(strand, odd, tolerance / rounds, scale)]
+        dropped = odd[_straight(strand, odd, tolerance / 2, scale)]
         mask = np.ones(count, dtype=bool)
         mask[dropped] = False
         strand = strand.taken(mask)
+        if len(dropped) < FEW * count:
+            return strand
     return strand
 
 
@@ -160,12 +165,14 @@ def _begins(strand: Strand) -> np.ndarray:
 
 
 def _straight(strand: Strand, index: np.ndarray, tolerance: float, scale: np.ndarray) -> np.ndarray:
-    before, here, after = (strand.points[index + k] for k in (-1, 0, 1))
-    chord = after - before
-    length2 = np.maximum((chord**2).sum(axis=1), 1e-30)
-    along = ((here - before) * chord).sum(axis=1) / length2
-    away = here - before - along[:, None] * chord
-    straight = ((away**2).sum(axis=1) <= tolerance**2) & (along > 0) & (along < 1)
+    """Tell which points are between their neighbours, and near the chord: by columns, which is quicker."""
+    before = strand.points[index - 1]
+    chord, here = strand.points[index + 1] - before, strand.points[index] - before
+    length2 = np.maximum(np.einsum("ij,ij->i", chord, chord), 1e-30)
+    dot = np.einsum("ij,ij->i", here, chord)
+    along = dot / length2
+    away2 = np.einsum("ij,ij->i", here, here) - along * dot
+    straight = (away2 <= tolerance**2) & (along > 0) & (along < 1)
     if strand.values.shape[1]:
         left, value, right = (strand.values[index + k] for k in (-1, 0, 1))
         mixed = left + along[:, None] * (right - left)
