@@ -1,0 +1,96 @@
+"""Which level each block gets: as fine as its significance under the transfer function asks for (Hernell2007, 4.1).
+
+The error of a level is measured where it is seen, in colour: the distance in CIELAB between what a voxel looks
+like and what its stand-in at that level does, before black and before white, so that opacity counts as well.
+Levels are then chosen so that the sum of squared errors is least for a given number of texels.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...scene import TransferFunction
+from .pyramid import FINEST, LEVELS, Pyramid
+
+#: Entries over the value range of the tables that classify samples.
+ENTRIES = 4096
+#: Blocks judged at a time.
+CHUNK = 2048
+#: Texels of a block at each level.
+TEXELS = 8 ** np.arange(LEVELS)
+#: Linear sRGB to CIE XYZ relative to its white (D65); rows X, Y, Z.
+_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+_XYZ /= _XYZ.sum(axis=1, keepdims=True)
+
+
+def cielab(linear: np.ndarray) -> np.ndarray:
+    """Return L*, a*, b* of linear sRGB, shape (..., 3)."""
+    xyz = np.clip(linear, 0, None) @ _XYZ.T
+    f = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz / (3 * (6 / 29) ** 2) + 4 / 29)
+    x, y, z = np.moveaxis(f, -1, 0)
+    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+
+
+def looks(transfer: TransferFunction, domain: tuple[float, float]) -> np.ndarray:
+    """Return what values look like: CIELAB before black and before white; float32, shape (ENTRIES, 6).
+
+    Of a two-dimensional function, each value's most opaque gradient counts.
+    """
+    values = np.linspace(*domain, ENTRIES)
+    if transfer.regions:
+        gradients = np.linspace(0, max(_steepest(transfer), 1e-9), 33)
+        sampled = transfer.evaluate_2d(values[:, None], gradients[None])
+        sampled = sampled[np.arange(ENTRIES), sampled[..., 3].argmax(axis=1)]
+    else:
+        sampled = transfer.evaluate(values)
+    alpha = sampled[:, 3:4]
+    light = alpha * (sampled[:, :3] + sampled[:, 4:])
+    shown = [cielab(np.minimum(light + (1 - alpha) * back, 1)) for back in (0, 1)]
+    return np.concatenate(shown, axis=1).astype(np.float32)
+
+
+def _steepest(transfer: TransferFunction) -> float:
+    ends = [g for r in transfer.regions for g in (*r.gradient, *(g for _, g in r.points))]
+    return float(max(ends))
+
+
+def errors(pyramid: Pyramid, wanted: np.ndarray, look: np.ndarray) -> np.ndarray:
+    """Return the mean squared colour error of wanted blocks (indices) at each level; shape (n, LEVELS)."""
+    result = np.zeros((len(wanted), LEVELS))
+    scale = (ENTRIES - 1) / np.iinfo(pyramid.samples.dtype).max
+    for start in range(0, len(wanted), CHUNK):
+        part = wanted[start : start + CHUNK]
+        entries = np.rint(pyramid.samples[:, part] * np.float32(scale)).astype(np.int32)
+        exact = look[entries[FINEST]]
+        for level in range(FINEST):
+            away = look[entries[level]] - exact
+            result[start : start + CHUNK, level] = np.einsum("bsc,bsc->b", away, away) / (2 * away.shape[1])
+    return result
+
+
+def choose(error: np.ndarray, texels: float, coarsest: int) -> np.ndarray:
+    """Return the level of each block: least error with at most so many texels, none below `coarsest`.
+
+    Parameters
+    ----------
+    error : ndarray, shape (n, LEVELS)
+        Squared error at each level.
+    texels : float
+        Texels that there may be; where the coarsest levels have more, it is they.
+    coarsest : int
+        Level, 0 to `FINEST`.
+    """
+    cost = np.where(np.arange(LEVELS) < coarsest, np.inf, error)
+
+    def at(price: float) -> np.ndarray:
+        return np.asarray((cost + price * TEXELS).argmin(axis=1))
+
+    low, high = 1e-12, 1e6  # of a texel, in squared colour distance
+    best = at(low)
+    if TEXELS[best].sum() <= texels:
+        return best
+    for _ in range(48):
+        middle = float(np.sqrt(low * high))
+        levels = at(middle)
+        low, high = (low, middle) if TEXELS[levels].sum() <= texels else (middle, high)
+    return at(high)
