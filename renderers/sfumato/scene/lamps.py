@@ -56,8 +56,8 @@ def half_angles(light: Light, points: np.ndarray) -> np.ndarray:
         return np.full(len(points), light.aperture)
     away = np.maximum(distances(light, points), TOUCHING)
     if light.kind != "area" or light.shape == "sphere":
-        return np.degrees(np.arcsin(np.minimum(light.radius / away, 1.0)))
-    return np.degrees(np.arctan(np.sqrt(_seen_area(light, points, away) / math.pi) / away))
+        return np.asarray(np.degrees(np.arcsin(np.minimum(light.radius / away, 1.0))))
+    return np.asarray(np.degrees(np.arctan(np.sqrt(_seen_area(light, points, away) / math.pi) / away)))
 
 
 def _seen_area(light: Light, points: np.ndarray, away: np.ndarray) -> np.ndarray:
@@ -105,7 +105,7 @@ def beam(light: Light, points: np.ndarray) -> np.ndarray:
 
 def arriving(light: Light, points: np.ndarray) -> np.ndarray:
     """Return the share of a lamp's intensity that reaches points (n, 3) through empty space; shape (n,)."""
-    return falloff(light, points) * beam(light, points)
+    return np.asarray(falloff(light, points) * beam(light, points))
 
 
 __all__ = ["arriving", "beam", "beam_edges", "directions_towards", "distances", "falloff", "half_angles"]
