@@ -124,10 +124,11 @@ class Autosave(QObject):
 
     def watch(self) -> None:
         """Look whether there is something to write, or no longer."""
-        volume = self._editor.scene.volume
+        scene = self._editor.scene
+        named = bool(scene.volume.info.path) if scene.volume is not None else bool(scene.geometry)
         if not self._editor.document.modified:
             self.clear()
-        elif volume is not None and volume.info.path and not self._timer.isActive():
+        elif named and not self._timer.isActive():
             # Not started anew at each change: a hand that never rests is saved too.
             self._timer.start(AUTOSAVE_MS)
 

@@ -19,6 +19,7 @@ import sfumato_samples
 from .editing import Editor
 from .icons import icon
 from .recent import RecentMenu
+from .subject import is_open
 from .theme import current_theme
 
 
@@ -108,7 +109,7 @@ class TopBar(QFrame):
         ):
             button.setEnabled(bool(label))
             button.setToolTip(f"{word}: {label} ({keys})" if label else f"Nothing to {word.lower()}")
-        opened = self._editor.scene.volume is not None
+        opened = is_open(self._editor.scene)
         for button in (self.save, self.before, self.picture):
             button.setEnabled(opened)
 

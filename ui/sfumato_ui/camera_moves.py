@@ -15,6 +15,8 @@ from sfumato import Camera, Scene
 from sfumato.scene import STANDARD_VIEWS
 from sfumato.scene.presets import suggest_view
 
+from .subject import bounds_of
+
 #: Closest approach to the poles in degrees.
 POLE_MARGIN = 1.0
 #: Limits of the distance between eye and focal point, relative to the subject's size.
@@ -150,10 +152,17 @@ def whole_view(scene: Scene, aspect: float, view: str = "") -> Camera | None:
         Name of a standard view; the camera's own direction if empty.
     """
     camera = scene.camera
-    if scene.volume is None or camera is None:
+    corners = bounds_of(scene)
+    if corners is None or camera is None:
         return None
     looking = from_side(camera, view) if view else camera
     basis = looking.basis()
+    if scene.volume is None:
+        whole = Camera.fit(
+            corners, (basis.back, basis.up), aspect=aspect,
+            view_angle=camera.view_angle, parallel_projection=camera.parallel_projection,
+        )  # fmt: skip
+        return replace(whole, view_up=looking.view_up)
     whole = suggest_view(
         scene.volume, scene.transfer, (basis.back, basis.up), aspect=aspect,
         view_angle=camera.view_angle, parallel_projection=camera.parallel_projection,

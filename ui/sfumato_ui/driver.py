@@ -9,6 +9,7 @@ from sfumato import Scene
 from .editing import Editor
 from .jobs import Picture, ViewRequest
 from .quality import chosen_quality
+from .subject import is_drawable
 from .viewport import Viewport
 from .worker import RenderWorker
 
@@ -59,14 +60,15 @@ class ViewDriver(QObject):
     def shown_scene(self) -> Scene:
         """The scene that the viewport shows."""
         scene = self._editor.scene
-        return scene.with_(technique=UNLIT) if self._unlit else scene
+        unlit = self._unlit and scene.volume is not None
+        return scene.with_(technique=UNLIT) if unlit else scene
 
     def stop(self) -> None:
         """Ask for nothing more."""
         self._still.stop()
 
     def _request(self, interactive: bool) -> None:
-        if self._editor.scene.volume is not None and self._viewport.isVisible():
+        if is_drawable(self.shown_scene) and self._viewport.isVisible():
             size = self._viewport.pixel_size
             self._worker.show(ViewRequest(self.shown_scene, size, interactive, self._frames))
 

@@ -20,6 +20,7 @@ from .export_dialog import ExportDialog, ExportWish
 from .jobs import Picture, SaveRequest
 from .messages import MessageBar
 from .settings import settings
+from .subject import is_open
 from .theme import PICTURE_GREY
 from .viewport import Viewport
 from .worker import RenderWorker
@@ -67,7 +68,7 @@ class Exporter(QObject):
     def ask(self) -> None:
         """Let the user choose how, then where."""
         camera = self._editor.scene.camera
-        if self._editor.scene.volume is None or camera is None:
+        if not is_open(self._editor.scene) or camera is None:
             return
         dialog = ExportDialog(
             self._viewport.pixel_size, camera.parallel_projection, self.seconds_for, self._window

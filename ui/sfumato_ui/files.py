@@ -9,7 +9,8 @@ from typing import Any
 from qtpy.QtCore import QObject, Signal
 from qtpy.QtWidgets import QDialog, QFileDialog, QWidget
 
-from sfumato import Scene, SfumatoError
+from sfumato import Geometry, Scene, SfumatoError
+from sfumato.geometry import is_geometry
 
 from .autosave import Slot
 from .dialogs import ask_about_unsaved
@@ -19,6 +20,7 @@ from .messages import MessageBar
 from .raw_dialog import RawDialog
 from .recent import last_folder, remember
 from .series_dialog import SeriesDialog
+from .subject import is_open, name_of, technique_drawing_geometry
 
 
 class Files(QObject):
@@ -39,6 +41,8 @@ class Files(QObject):
         self.loader = Loader()
         self.scene_path = ""
         self._wish = Wish("")
+        #: Geometry that is to be added to what is being opened.
+        self._more: list[str] = []
         self._connect()
 
     def _connect(self) -> None:
@@ -47,6 +51,7 @@ class Files(QObject):
             lambda done, text: self._bar.show_progress(f"Opening {self._wish.name}… {text}", done)
         )
         loader.loaded.connect(self._on_loaded)
+        loader.geometry_loaded.connect(self._on_geometry)
         loader.several.connect(self._ask_for_series)
         loader.raw_found.connect(self._ask_for_form)
         loader.reduced.connect(self._on_reduced)
@@ -55,13 +60,14 @@ class Files(QObject):
         self._bar.cancelled.connect(self._cancel)
 
     def _cancel(self) -> None:
+        self._more.clear()
         self.loader.cancel()
         self._bar.clear("progress")
 
     # -- opening ----------------------------------------------------------------------------------
     def ask_to_open(self) -> None:
         """Let the user choose a file; folders are dropped on the window or chosen by any file in them."""
-        dialog = QFileDialog(self._window, "Open a volume or a scene", last_folder())
+        dialog = QFileDialog(self._window, "Open a volume, tracts, a mesh or a scene", last_folder())
         dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
         dialog.fileSelected.connect(self.open)
         dialog.finished.connect(dialog.deleteLater)
@@ -77,9 +83,40 @@ class Files(QObject):
         dialog.open()
 
     def open(self, path: str) -> None:
-        """Open a path, after asking about unsaved work."""
-        if self.may_leave():
-            self._begin(Wish(path))
+        """Open a path, after asking about unsaved work; tracts and meshes join what is open."""
+        self.open_all([path])
+
+    def open_all(self, paths: list[str]) -> None:
+        """Open the first path that is no geometry, and add all geometry to it, or to what is open."""
+        geometry = [p for p in paths if is_geometry(p)]
+        others = [p for p in paths if p not in geometry]
+        if not others and is_open(self._editor.scene):
+            self._add_geometry(geometry)
+        elif (others or geometry) and self.may_leave():
+            self._more = geometry if others else geometry[1:]
+            self._begin(Wish((others or geometry)[0]))
+
+    def _add_geometry(self, paths: list[str]) -> None:
+        self._wish = Wish(paths[0])
+        self._bar.show_progress(f"Opening {self._wish.name}… ", 0.0)
+        self._bar.repaint()
+        self.loader.open_geometry(paths, self._editor.scene)
+
+    def _on_geometry(self, geometry: tuple[Geometry, ...], notices: tuple[str, ...]) -> None:
+        self._bar.clear("progress")
+        self._bar.clear("error")
+        scene = self._editor.scene
+        for one in geometry:
+            if one.path:
+                remember(one.path)
+        names = ", ".join(one.name for one in geometry)
+        self._editor.change(
+            f"Add {names}",
+            technique=technique_drawing_geometry(scene),
+            geometry=(*scene.geometry, *geometry),
+        )
+        if notices:
+            self._bar.show_notice("\n".join(notices))
 
     def _begin(self, wish: Wish) -> None:
         self._wish = wish
@@ -101,6 +138,9 @@ class Files(QObject):
         self.opened.emit()
         if scene.volume is not None and scene.volume.info.notices:
             self._bar.show_notice("\n".join(scene.volume.info.notices))
+        if self._more:
+            more, self._more = self._more, []
+            self._add_geometry(more)
 
     def recover(self, slot: Slot) -> bool:
         """Open what a crash left behind, after asking about unsaved work; tells whether that was allowed."""
@@ -116,7 +156,8 @@ class Files(QObject):
     def _on_failed(self, message: str) -> None:
         if self._wish.slot:  # it is offered again at the next start
             self._wish.slot.release()
-        kept = " What was open stays open." if self._editor.scene.volume is not None else ""
+        self._more.clear()
+        kept = " What was open stays open." if is_open(self._editor.scene) else ""
         self._bar.show_error(f"{message}.{kept}")
 
     def _ask_for_series(self, path: str, series: Any) -> None:
@@ -159,10 +200,7 @@ class Files(QObject):
         """Name of what is open."""
         if self.scene_path:
             return Path(self.scene_path).stem
-        volume = self._editor.scene.volume
-        if volume is None:
-            return ""
-        return volume.info.name or Path(volume.info.path).name or "volume"
+        return name_of(self._editor.scene)
 
     def may_leave(self) -> bool:
         """Ask about unsaved work; tells whether it may be left behind."""
@@ -173,13 +211,13 @@ class Files(QObject):
 
     def save_scene(self, wait: bool = False) -> bool:
         """Save to the scene's file, or ask for one; tells whether it was saved, if it is to wait for that."""
-        if self._editor.scene.volume is None:
+        if not is_open(self._editor.scene):
             return False
         return self.save_scene_as(self.scene_path) if self.scene_path else self.ask_to_save_scene(wait)
 
     def ask_to_save_scene(self, wait: bool = False) -> bool:
         """Let the user choose the scene's file; tells whether it was saved, if it is to wait for that."""
-        if self._editor.scene.volume is None:
+        if not is_open(self._editor.scene):
             return False
         start = self.scene_path or str(Path(last_folder()) / f"{self.name or 'scene'}{SCENE_SUFFIX}")
         dialog = QFileDialog(self._window, "Save the scene", start, f"Scenes (*{SCENE_SUFFIX})")

@@ -12,10 +12,13 @@ from typing import Any
 from qtpy.QtCore import QObject, Signal
 
 import sfumato_samples
-from sfumato import Scene, Volume
+from sfumato import Geometry, Scene, Volume
 from sfumato.export.png import carries_scene, open_png
+from sfumato.geometry import is_geometry
 from sfumato.scene.presets import presets_for, suggest_view
 
+from .camera_moves import whole_view
+from .subject import technique_drawing_geometry
 from .wording import one_line
 
 #: Shown when nothing was asked for.
@@ -74,6 +77,8 @@ class Loader(QObject):
     loaded = Signal(object, object)
     #: The scene with its volume at half the resolution.
     reduced = Signal(object)
+    #: Tracts and meshes are ready (tuple of them, tuple of notices).
+    geometry_loaded = Signal(object, object)
     #: A folder holds several DICOM series (path, list of series).
     several = Signal(str, object)
     #: Bare voxels that nothing describes (path, list of guesses).
@@ -89,6 +94,10 @@ class Loader(QObject):
     def open(self, wish: Wish, aspect: float = 1.0) -> None:
         """Begin to open a volume, a folder, a scene file or a sample, for a picture of an aspect."""
         self._start(lambda progress, stop: self._open(wish, aspect, progress, stop))
+
+    def open_geometry(self, paths: list[str], scene: Scene) -> None:
+        """Begin to open tracts and meshes that are to join a scene."""
+        self._start(lambda progress, stop: self._open_geometry(paths, scene, progress, stop))
 
     def reduce(self, scene: Scene) -> None:
         """Begin to halve the resolution of a scene's volume."""
@@ -139,6 +148,20 @@ class Loader(QObject):
             return partial(self.raw_found.emit, error.path, guess_raw(error.path))
         return partial(self.loaded.emit, scene, wish)
 
+    def _open_geometry(
+        self, paths: list[str], scene: Scene, progress: Any, stop: threading.Event
+    ) -> Callable[[], object]:
+        made: list[Geometry] = []
+        notices: list[str] = []
+        for i, path in enumerate(paths):
+
+            def step(done: float, text: str, i: int = i) -> None:
+                progress((i + done) / len(paths), text)
+
+            made.append(read_geometry(path, step, stop.is_set))
+            notices += geometry_notices(made[-1], scene.volume)
+        return partial(self.geometry_loaded.emit, tuple(made), tuple(notices))
+
     def _reduce(self, scene: Scene, progress: Any, stop: threading.Event) -> Callable[[], object]:
         from sfumato.io import reduce_volume
 
@@ -154,12 +177,45 @@ def read_scene(wish: Wish, progress: Any = None, cancel: Any = None, aspect: flo
         scene = Scene.open(wish.path)
     elif wish.is_sample:
         scene = sfumato_samples.scene(wish.path.removeprefix(SAMPLE))
+    elif is_geometry(wish.path):
+        return _of_geometry(read_geometry(wish.path, progress, cancel), aspect)
     elif carries_scene(wish.path):
         scene = open_png(wish.path)
     else:
         scene = _fitting(_read_volume(wish, progress, cancel), aspect)
     _prepare(scene)
     return scene
+
+
+def read_geometry(path: str, progress: Any = None, cancel: Any = None) -> Geometry:
+    """Read tracts or a mesh, and build what is drawn, so that the first picture need not."""
+    from sfumato.geometry import load_geometry, mesh_of
+    from sfumato.io import LoadCancelled
+
+    def step(first: float, done: float, text: str) -> None:
+        if cancel is not None and cancel():
+            raise LoadCancelled(path)
+        if progress is not None:
+            progress(first + 0.5 * done, text)
+
+    geometry = load_geometry(path, progress=partial(step, 0.0), cancel=cancel)
+    mesh_of(geometry, partial(step, 0.5))
+    return geometry
+
+
+def geometry_notices(geometry: Geometry, volume: Volume | None) -> list[str]:
+    """Return what was left out of a geometry, and what of it lies outside the volume."""
+    from sfumato.geometry import outside_notice
+
+    outside = outside_notice(geometry, volume.texture_from_world) if volume is not None else ""
+    return [*geometry.notices, *([outside] if outside else [])]
+
+
+def _of_geometry(geometry: Geometry, aspect: float) -> Scene:
+    """Return a new scene of geometry alone, seen as a whole in a picture of an aspect."""
+    scene = Scene(geometry=(geometry,))
+    camera = whole_view(scene, aspect, "front")
+    return scene.with_(camera=camera, technique=technique_drawing_geometry(scene))
 
 
 def _fitting(volume: Volume, aspect: float) -> Scene:

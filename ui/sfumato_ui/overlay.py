@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QRect, QRectF, Qt
-from qtpy.QtGui import QColor, QPainter
+from collections.abc import Sequence
+
+import numpy as np
+from qtpy.QtCore import QPointF, QRect, QRectF, Qt
+from qtpy.QtGui import QColor, QImage, QPainter
+
+from sfumato.export.encode import srgb
+from sfumato.geometry import ColorBar
 
 #: Radius of the hemisphere on which lamps are moved, in the shorter side of the picture; with the ring
 #: around it for lamps from behind it fills the picture.
 LIGHT_RADIUS = 0.36
+#: Size in pixels of a colour bar's strip, where there is room.
+BAR_WIDTH, BAR_HEIGHT = 14, 150
 _INK = QColor(255, 255, 255)
 _SHADE = QColor(20, 20, 20, 200)
 
@@ -50,3 +58,36 @@ def draw_hint(painter: QPainter, area: QRect, text: str) -> None:
     metrics = painter.fontMetrics()
     width, height = metrics.horizontalAdvance(text) + 28, metrics.height() + 14
     draw_text(painter, QRectF(area.right() - width - 7, area.bottom() - height - 7, width, height), text)
+
+
+def draw_color_bars(painter: QPainter, area: QRect, bars: Sequence[ColorBar]) -> None:
+    """Draw colour bars in the picture's lower left corner, beside each other, above the letters' row."""
+    line = painter.fontMetrics().height()
+    height = min(BAR_HEIGHT, area.height() // 3)
+    left = area.left() + 14
+    top = area.bottom() - height - 3 * line
+    for bar in bars:
+        texts = [text for _, text in bar.ticks]
+        wide = max(painter.fontMetrics().horizontalAdvance(t) for t in (*texts, bar.title))
+        box = QRectF(left - 6, top - line - 8, BAR_WIDTH + wide + 22, height + line + 18)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(_SHADE)
+        painter.drawRoundedRect(box, 4, 4)
+        _draw_bar(painter, QRectF(left, top, BAR_WIDTH, height), bar)
+        left += round(box.width()) + 8
+
+
+def _draw_bar(painter: QPainter, strip: QRectF, bar: ColorBar) -> None:
+    rows = max(1, round(strip.height()))
+    picked = bar.colors[np.linspace(len(bar.colors) - 1, 0, rows).astype(int)]
+    pixels = np.ascontiguousarray(np.rint(255 * srgb(picked)).astype(np.uint8))
+    # A row of one pixel is three bytes: Qt has to be told, it would take four.
+    painter.drawImage(strip, QImage(pixels.data, 1, rows, 3, QImage.Format.Format_RGB888))
+    painter.setPen(_INK)
+    line = painter.fontMetrics().height()
+    middle = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
+    painter.drawText(QRectF(strip.left(), strip.top() - line - 4, 400, line), middle, bar.title)
+    for value, text in bar.ticks:
+        y = strip.bottom() - strip.height() * (value - bar.low) / (bar.high - bar.low)
+        painter.drawLine(QPointF(strip.right(), y), QPointF(strip.right() + 4, y))
+        painter.drawText(QRectF(strip.right() + 8, y - line / 2, 400, line), middle, text)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import (
     QColor,
@@ -27,6 +26,7 @@ from qtpy.QtGui import (
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from sfumato import Camera
+from sfumato.geometry import color_bars
 from sfumato.scene.picking import surface_under
 
 from . import camera_moves, overlay
@@ -34,6 +34,7 @@ from .clip_planes import ClipPlanes
 from .dial import MOVE
 from .editing import Editor
 from .jobs import Picture
+from .subject import is_open, size_of
 from .theme import DARK, PICTURE_GREY
 from .tools import ClipTool, HandleTool, LightTool, PictureView
 from .tools import light as light_tool
@@ -105,7 +106,7 @@ class Viewport(QWidget):
     def view(self) -> PictureView | None:
         """From world to picture and back, for the current camera; None if nothing is open."""
         scene = self._editor.scene
-        if scene.camera is None or scene.volume is None:
+        if scene.camera is None or not is_open(scene):
             return None
         return PictureView(scene.camera, self.width(), self.height())
 
@@ -155,7 +156,7 @@ class Viewport(QWidget):
         if self._picture is not None:
             painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
             painter.drawImage(self._target(self._picture), self._picture.image)
-        elif scene.volume is None:
+        elif not is_open(scene):
             overlay.draw_centred(painter, self.rect(), self.empty_text)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if scene.volume is not None and scene.camera is not None:
@@ -163,6 +164,8 @@ class Viewport(QWidget):
             overlay.draw_letters(
                 painter, self.rect(), camera_moves.edge_letters(scene.camera) if known else None
             )
+        if self._picture is not None and scene.geometry:
+            overlay.draw_color_bars(painter, self.rect(), color_bars(scene))
         self._paint_tool(painter)
         if self.hint and self._tool == "orbit" and scene.volume is not None:
             overlay.draw_hint(painter, self.rect(), self.hint)
@@ -364,5 +367,4 @@ class Viewport(QWidget):
             self.lamp_moved.emit()
 
     def _subject_size(self) -> float:
-        volume = self._editor.scene.volume
-        return float(np.linalg.norm(np.ptp(volume.corners(), axis=0))) if volume is not None else 0.0
+        return size_of(self._editor.scene)

@@ -141,6 +141,7 @@ class MainWindow(QMainWindow):
         self.view_page.frames_chosen.connect(self.driver.set_frames)
         self.viewport.clips.added.connect(lambda: self.strip.choose("clip"))
         self.light_page.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
+        self.view_page.shapes.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
         self.viewport.lamp_moved.connect(self._hint_done)
         self.viewport.resized.connect(self.messages.place)
         editor.changed.connect(lambda old, new: self._show_title())
@@ -276,11 +277,11 @@ class MainWindow(QMainWindow):
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:
-        """Open the first file or folder that was dropped."""
+        """Open the first file or folder that was dropped, and all tracts and meshes with it."""
         paths = [url.toLocalFile() for url in event.mimeData().urls() if url.isLocalFile()]
         if paths:
             event.acceptProposedAction()
-            self.open(paths[0])
+            self.files.open_all(paths)
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved work, then end the threads without freezing."""

@@ -1,4 +1,4 @@
-"""The View tab: standard views, projection, lens, clip planes, crop box, exposure, background.
+"""The View tab: standard views, projection, lens, clip planes, crop box, geometry, exposure, background.
 
 Under More: quality of the still picture, sampling, theme.
 """
@@ -24,6 +24,7 @@ from ..clip_controls import ClipControls, CropControls
 from ..clip_planes import ClipPlanes
 from ..editing import Editor
 from ..generated import ChoiceBox, bind_slider, labelled, slider_for
+from ..geometry_controls import GeometryControls
 from ..jobs import STILL_SECONDS
 from ..quality import QUALITIES, chosen_quality, remember_quality
 from ..section import Section
@@ -57,6 +58,7 @@ class ViewPage(Page):
         self.lens = slider_for(fields_of(Camera)["view_angle"])
         self.clip = ClipControls(editor, clips)
         self.crop = CropControls(editor, clips)
+        self.shapes = GeometryControls(editor)
         self.exposure = slider_for(fields_of(Scene)["exposure"])
         self.step = slider_for(fields_of(Scene)["step"])
         self.background: list[QPushButton] = []
@@ -73,6 +75,7 @@ class ViewPage(Page):
         self.add(self.clip)
         self.add_heading("Crop box")
         self.add(self.crop)
+        self.add(self.shapes)
         self.add_heading("Picture")
         self.add(self.exposure)
         self.add(self._background_row())
@@ -174,6 +177,7 @@ class ViewPage(Page):
         scene = self._editor.scene
         self.clip.refresh()
         self.crop.refresh()
+        self.shapes.refresh()
         self.exposure.set_number(scene.exposure)
         self.step.set_number(scene.step)
         for button, color in zip(self.background, BACKGROUNDS.values(), strict=True):

@@ -1,0 +1,156 @@
+"""Tracts and meshes in the window: opened, dropped, listed, changed, saved; with the scan or alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from nibabel.streamlines import Tractogram, TrkFile
+from qtpy.QtCore import QMimeData, QPoint, Qt, QUrl
+from qtpy.QtGui import QDragEnterEvent, QDropEvent
+from qtpy.QtWidgets import QApplication
+
+from sfumato import Geometry, Lines, Scene
+from sfumato.geometry import color_bars
+from sfumato.techniques import technique_with_geometry
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture
+def tracts(tmp_path):
+    """Twenty lines within the ball's box, with values, and one of one point."""
+    rng = np.random.default_rng(0)
+    lines = [np.float32(rng.uniform(-38, -2, (8, 3)) * [1, 1, -1]) for _ in range(20)] + [
+        np.float32([[0, 0, 0]])
+    ]
+    values = {"fa": [np.linspace(0, 1, len(line), dtype=np.float32)[:, None] for line in lines]}
+    TrkFile(Tractogram(lines, data_per_point=values, affine_to_rasmm=np.eye(4))).save(
+        str(tmp_path / "bundle.trk")
+    )
+    return str(tmp_path / "bundle.trk")
+
+
+def drop(window, *paths):
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(p)) for p in paths])
+    at, actions = window.rect().center(), Qt.DropAction.CopyAction
+    for kind in (QDragEnterEvent, QDropEvent):
+        place = QPoint(at) if kind is QDragEnterEvent else at.toPointF()
+        QApplication.sendEvent(window, kind(place, actions, data, LEFT, Qt.KeyboardModifier.NoModifier))
+
+
+def test_dropped_tracts_join_the_volume(window, tracts, qtbot):
+    volume = window.editor.scene.volume
+    drop(window, tracts)
+    qtbot.waitUntil(lambda: len(window.editor.scene.geometry) == 1, timeout=20_000)
+    scene = window.editor.scene
+    assert scene.volume is volume
+    assert scene.geometry[0].shape.count == 20
+    assert "1 line of one point left out" in window.messages.text
+    assert window.editor.document.undo_label == "Add bundle"
+    if technique_with_geometry():
+        assert scene.technique_id == technique_with_geometry()
+    window.editor.undo()
+    assert window.editor.scene.geometry == ()
+    assert not window.view_page.shapes.isVisibleTo(window.view_page)
+
+
+def test_bad_tracts_leave_the_scene_alone(window, tmp_path, qtbot):
+    (tmp_path / "bad.trk").write_bytes(b"no")
+    before = window.editor.scene
+    drop(window, tmp_path / "bad.trk")
+    qtbot.waitUntil(lambda: window.messages.kind == "error", timeout=20_000)
+    assert "bad.trk" in window.messages.text
+    assert window.editor.scene is before
+
+
+def test_scan_and_tracts_dropped_together(make_window, tmp_path, tracts, qtbot):
+    np.save(tmp_path / "v.npy", np.zeros((8, 8, 8), np.uint8) + np.arange(8, dtype=np.uint8) * 30)
+    window = make_window()
+    drop(window, tracts, tmp_path / "v.npy")
+    qtbot.waitUntil(lambda: bool(window.editor.scene.geometry), timeout=20_000)
+    assert window.editor.scene.volume is not None
+
+
+def test_tracts_alone_are_a_scene(make_window, tracts, tmp_path, qtbot):
+    window = make_window()
+    window.open(tracts)
+    qtbot.waitUntil(lambda: bool(window.editor.scene.geometry), timeout=20_000)
+    scene = window.editor.scene
+    assert scene.volume is None
+    assert scene.camera is not None
+    assert window.files.name == "bundle"
+    assert window.top.save.isEnabled()
+    window.look("left")
+    assert window.editor.scene.camera != scene.camera
+    assert window.files.save_scene_as(str(tmp_path / "s.sfumato"))
+    assert Scene.open(tmp_path / "s.sfumato").geometry[0].shape == scene.geometry[0].shape
+
+
+@pytest.fixture
+def shapes(window, tracts, qtbot):
+    """The Geometry section, with tracts."""
+    window.panel.setCurrentWidget(window.view_page)
+    drop(window, tracts)
+    qtbot.waitUntil(lambda: bool(window.editor.scene.geometry), timeout=20_000)
+    qtbot.wait(20)
+    return window.view_page.shapes
+
+
+def shown(window):
+    return window.editor.scene.geometry[0]
+
+
+def choose(box, data):
+    index = box.findData(data)
+    assert index >= 0
+    box.setCurrentIndex(index)
+    box.activated.emit(index)
+
+
+def test_section_shows_and_changes_the_tracts(window, shapes, hand, qtbot):
+    assert shapes.isVisible()
+    assert shapes.header.isChecked(), "opens with the first tracts"
+    assert shapes.count.text() == "20 lines"
+    before = shown(window).radius
+    hand.drag_slider(shapes.sliders["radius"].slider, 0.5, 0.9)
+    assert shown(window).radius > 2 * before
+    assert window.editor.document.undo_label == "Change radius"
+    hand.drag_slider(shapes.sliders["fraction"].slider, 1.0, 0.4)
+    assert shapes.count.text().endswith("of 20 lines")
+    qtbot.mouseClick(shapes.visible, LEFT)
+    assert not shown(window).visible
+    qtbot.mouseClick(shapes.visible, LEFT)
+    assert shown(window).visible
+
+
+def test_colouring_by_values_has_a_bar_in_the_picture(window, shapes, hand):
+    assert shapes.rows["color_by"].isVisible()
+    assert not shapes.rows["scalar"].isVisible()
+    plain = window.viewport.grab().toImage()
+    choose(shapes.coloring, "scalar")
+    assert shapes.rows["scalar"].isVisible()
+    choose(shapes.colormap, "magma")
+    (bar,) = color_bars(window.editor.scene)
+    assert bar.title == "fa"
+    image = window.viewport.grab().toImage()
+    strip = [image.pixelColor(20, y) for y in range(image.height() - 240, image.height() - 40)]
+    bright = [c.lightness() for c in strip if c != plain.pixelColor(20, 0)]
+    assert max(bright) - min(bright) > 150, "from magma's dark end to its light one"
+    choose(shapes.coloring, "color")
+    assert shapes.rows["color"].isVisible()
+
+
+def test_several_are_listed_and_removed(window, shapes, qtbot):
+    more = Geometry(Lines.of([[[5, 5, 5], [30, 30, 30]]]), name="second")
+    window.editor.change("Add second", geometry=(*window.editor.scene.geometry, more))
+    assert [shapes.choice.itemText(i) for i in range(2)] == ["bundle", "second"]
+    assert shapes.choice.currentIndex() == 1, "the new one is selected"
+    assert shapes.coloring.findData("scalar") < 0, "it has no values"
+    qtbot.mouseClick(shapes.remove, LEFT)
+    assert [g.name for g in window.editor.scene.geometry] == ["bundle"]
+    assert shapes.coloring.findData("scalar") >= 0
+    qtbot.mouseClick(shapes.remove, LEFT)
+    assert not shapes.isVisible()
+    window.editor.undo()
+    assert shapes.isVisible()
