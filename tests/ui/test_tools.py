@@ -15,8 +15,8 @@ from qtpy.QtWidgets import QApplication, QWidget
 from sfumato import Light, Scene
 from sfumato.scene.picking import surface_under
 from sfumato_ui import camera_moves
+from sfumato_ui.lamp_places import moved, seen_angles
 from sfumato_ui.tools import PictureView
-from sfumato_ui.tools.light import moved, seen_angles
 from sfumato_ui.window import MainWindow
 
 LEFT = Qt.MouseButton.LeftButton

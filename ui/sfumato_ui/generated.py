@@ -8,7 +8,7 @@ from qtpy.QtCore import Qt
 from qtpy.QtGui import QWheelEvent
 from qtpy.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QToolButton, QWidget
 
-from sfumato.scene import Field, Param
+from sfumato.scene import Field, Param, TechniqueParams
 
 from .editing import Editor
 from .icons import icon
@@ -79,14 +79,15 @@ def slider_for(field: Field) -> LabelledSlider:
     param = field.param
     assert param is not None
     low, high = slider_range(param)
-    whole = field.type is int
+    whole = field.kind is int
     # About a hundred key steps from end to end, rounded to a decimal power.
     step = 1.0 if whole or high - low >= 50 else 0.1 if high - low > 4 else 0.01 if high - low <= 1 else 0.05
-    decimals = 0 if whole or step >= 1 else 2
+    decimals = 0 if whole or (step >= 1 and low == round(low)) else 1 if step >= 1 else 2
     limits = (param.ge if param.ge is not None else low, param.le if param.le is not None else high)
     return LabelledSlider(
-        label_of(field), ((low, high),), float(field.default), unit=param.unit, tip=tooltip_of(param),
-        decimals=decimals, step=step, limits=limits,
+        label_of(field), ((low, high),), None if field.default is None else float(field.default),
+        unit=param.unit, tip=tooltip_of(param), decimals=decimals, step=step, limits=limits,
+        none_label=param.none_label,
     )  # fmt: skip
 
 
@@ -102,6 +103,7 @@ def bind_slider(slider: LabelledSlider, editor: Editor, path: str, name: str, ki
         slider.set_number(value_at(editor.scene, path))
 
     slider.edited.connect(edit)
+    slider.cleared.connect(lambda: editor.change(f"Change {name}", **{path: None}))
     slider.drag_started.connect(lambda: editor.begin(f"Change {name}"))
     slider.drag_finished.connect(editor.end)
 
@@ -131,7 +133,7 @@ class ParamControl(QWidget):
             self.control = self._choice(field.param)
         else:
             self.control = slider_for(field)
-            bind_slider(self.control, editor, path, self.name.lower(), field.type)
+            bind_slider(self.control, editor, path, self.name.lower(), field.kind)
         self.control.setAccessibleName(self.name)
         self.control.setToolTip(tooltip_of(field.param))
         choice = isinstance(self.control, ChoiceBox)
@@ -172,7 +174,7 @@ class ParamControl(QWidget):
         """Show the scene's value."""
         value = value_at(self._editor.scene, self._path)
         if isinstance(self.control, LabelledSlider):
-            self.control.set_number(value)
+            self.control.set_number(value, self._in_effect() if value is None else None)
             return
         assert self.reset is not None
         self.reset.setVisible(value != self.field.default)
@@ -182,6 +184,13 @@ class ParamControl(QWidget):
         else:
             self.control.setCurrentIndex(self.control.findData(value))
         self.control.blockSignals(False)
+
+    def _in_effect(self) -> float | None:
+        """Return what no value amounts to for the selected lamp."""
+        owner = value_at(self._editor.scene, self._path.rpartition(".")[0])
+        if not isinstance(owner, TechniqueParams):
+            return None
+        return owner.in_effect(self.field.name, self._editor.scene, self._editor.light)
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
@@ -198,5 +207,5 @@ def controls_for(fields: dict[str, Field], level: str, editor: Editor, prefix: s
         for name, field in fields.items()
         if field.param is not None
         and field.param.level == level
-        and (field.type in (bool, int, float) or field.param.choices)
+        and (field.kind in (bool, int, float) or field.param.choices)
     ]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QEvent, QPointF, QRect, QSize, Qt, Signal
+from qtpy.QtCore import QEvent, QPoint, QPointF, QRect, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QApplication, QLineEdit, QStyle, QStyleOptionToolButton, QToolButton, QWidget
 
 from sfumato import Light
 
 from .color_button import to_srgb
+from .lamp_places import kind_of
 from .theme import TARGET, Theme, current_theme
 
 #: Longest name of a lamp in letters.
@@ -26,7 +27,7 @@ class LampChip(QToolButton):
     #: The lamp is to go one place on: -1 or 1.
     nudged = Signal(int)
     #: The chip is dragged to this place, in the row's coordinates.
-    dragged = Signal(int)
+    dragged = Signal(QPoint)
     drag_started = Signal()
     drag_finished = Signal()
 
@@ -54,8 +55,9 @@ class LampChip(QToolButton):
             "solo": " (solo: the others are dark)",
             "dark": " (dark: another lamp is solo, or its intensity is 0)",
         }.get(state, "")
+        kind = kind_of(light).title.lower()
         self.setToolTip(
-            f"<p>{label}{why}</p><p>F2 or a double-click renames it; drag it, or Ctrl+arrow keys, for another "
+            f"<p>{label}, {kind}{why}</p><p>F2 or a double-click renames it; drag it, or Ctrl+arrow keys, for another "
             "order.</p>"
         )
         self.updateGeometry()
@@ -120,7 +122,7 @@ class LampChip(QToolButton):
             self._dragging = True
             self.drag_started.emit()
         if self._dragging:
-            self.dragged.emit(self.mapToParent(event.position().toPoint()).x())
+            self.dragged.emit(self.mapToParent(event.position().toPoint()))
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Let the chip go."""

@@ -1,4 +1,4 @@
-"""What is done with the selected lamp beside the dial: intensity, colour, mute, solo, remove."""
+"""What is done with the selected lamp beside the dial: kind, intensity, colour, mute, solo, remove."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from qtpy.QtWidgets import QGridLayout, QLabel, QToolButton, QWidget
 
 from sfumato import Light, Scene
 from sfumato.scene import fields_of
+from sfumato.techniques import techniques
 
 from .color_button import RGB, ColorButton
 from .editing import Editor
-from .generated import tooltip_of
+from .generated import ChoiceBox, tooltip_of
 from .icons import icon
+from .lamp_places import KINDS, as_kind, kind_of, offered_kinds
 from .sliders import NumberBox
 from .theme import current_theme
 
@@ -24,12 +26,15 @@ class LampTools(QWidget):
     def __init__(self, editor: Editor) -> None:
         super().__init__()
         self._editor = editor
+        self.kind = _kind_box()
+        self.kind_words = QLabel("Kind")
         self.intensity = _intensity_box()
         self.color = ColorButton("Colour of the lamp")
         self.mute = _button("Mute the lamp", checkable=True)
         self.solo = _button("Solo: the other lamps are dark", checkable=True)
         self.remove = _button("Remove the lamp")
         self._lay_out()
+        self.kind.activated.connect(lambda index: self._set_kind(self.kind.itemData(index)))
         self.intensity.valueChanged.connect(lambda v: editor.change_light(INTENSITY, True, intensity=v))
         self.color.picked.connect(self._set_color)
         self.mute.clicked.connect(self._set_muted)
@@ -47,16 +52,16 @@ class LampTools(QWidget):
         grid.setRowStretch(0, 1)
         words = QLabel("Intensity")
         words.setBuddy(self.intensity)
-        grid.addWidget(words, 1, 0, 1, 3)
-        grid.addWidget(self.intensity, 2, 0, 1, 3)
-        grid.addWidget(QLabel("Colour"), 3, 0, 1, 3)
-        grid.addWidget(self.color, 4, 0, 1, 3)
+        self.kind_words.setBuddy(self.kind)
+        rows = (self.kind_words, self.kind, words, self.intensity, QLabel("Colour"), self.color)
+        for row, widget in enumerate(rows, 1):
+            grid.addWidget(widget, row, 0, 1, 3)
         for column, button in enumerate((self.mute, self.solo, self.remove)):
-            grid.addWidget(button, 5, column)
-        grid.setRowStretch(6, 1)
+            grid.addWidget(button, len(rows) + 1, column)
+        grid.setRowStretch(len(rows) + 2, 1)
 
     def _on_changed(self, old: Scene, new: Scene) -> None:
-        if old.lights != new.lights:
+        if old.lights != new.lights or type(old.technique) is not type(new.technique):
             self.refresh()
 
     def refresh(self) -> None:
@@ -65,6 +70,7 @@ class LampTools(QWidget):
         self.setEnabled(light is not None)
         if light is None:
             return
+        self._show_kind(light)
         self.intensity.blockSignals(True)
         self.intensity.setValue(light.intensity)
         self.intensity.blockSignals(False)
@@ -85,7 +91,24 @@ class LampTools(QWidget):
         self.solo.setIcon(icon("solo", theme))
         self.remove.setIcon(icon("remove", theme))
 
+    def _show_kind(self, light: Light) -> None:
+        """Offer the kinds that the technique knows; nothing, if that is the lamp's own alone."""
+        offered = offered_kinds(techniques()[self._editor.scene.technique_id], light)
+        self.kind.setVisible(len(offered) > 1)
+        self.kind_words.setVisible(len(offered) > 1)
+        if [self.kind.itemData(i) for i in range(self.kind.count())] != [kind.id for kind in offered]:
+            self.kind.clear()
+            for kind in offered:
+                self.kind.addItem(kind.title, kind.id)
+        self.kind.setCurrentIndex(self.kind.findData(kind_of(light).id))
+
     # -- edits ------------------------------------------------------------------------------------
+    def _set_kind(self, wanted: str) -> None:
+        light = self._editor.light
+        if light is not None and wanted != kind_of(light).id:
+            kind = next(kind for kind in KINDS if kind.id == wanted)
+            self._editor.change_light("Change the kind of lamp", **as_kind(self._editor.scene, light, kind))
+
     def _set_color(self, rgb: RGB) -> None:
         self._editor.change_light("Colour the lamp", True, color=rgb)
 
@@ -112,6 +135,17 @@ def _button(name: str, checkable: bool = False) -> QToolButton:
     button.setToolTip(name)
     button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
     return button
+
+
+def _kind_box() -> ChoiceBox:
+    box = ChoiceBox()
+    box.setMinimumContentsLength(max(len(kind.title) for kind in KINDS))
+    box.setAccessibleName("Kind of lamp")
+    box.setToolTip(
+        "<p>Parallel light comes from far away. Point, spot, rectangle, sphere and tube stand somewhere, also "
+        "inside the subject: drag them in the picture with the Light tool.</p>"
+    )
+    return box
 
 
 def _intensity_box() -> NumberBox:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QRect
-from qtpy.QtWidgets import QHBoxLayout, QToolButton, QWidget
+from qtpy.QtCore import QPoint, QRect
+from qtpy.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from sfumato import Light, Scene
 from sfumato.scene import MAX_LIGHTS
 from sfumato.scene.light import shining
+from sfumato.techniques import techniques
 
 from .editing import Editor
 from .icons import icon
@@ -22,30 +23,31 @@ NEW_LAMPS = (
     Light(name="top", tilt=50, rotation=90, aperture=30, intensity=0.4),
 )
 ORDER = "Move the lamp in the list"
+#: Chips beside each other; further ones stand below.
+IN_A_ROW = 4
 
 
 class LampRow(QWidget):
-    """One chip a lamp, then a button that adds another."""
+    """One chip a lamp, four in a row, then a button that adds another."""
 
     def __init__(self, editor: Editor) -> None:
         super().__init__()
         self._editor = editor
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(0, 0, 0, 0)
-        self._row.setSpacing(4)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(4)
+        self._rows: list[QHBoxLayout] = []
         self.chips: list[LampChip] = []
         self.name_line: NameLine | None = None
         self.add = QToolButton()
         self.add.setAccessibleName("Add a lamp")
-        self._row.addStretch(1)
-        self._row.addWidget(self.add)
         self.add.clicked.connect(self._add)
         editor.changed.connect(self._on_changed)
         editor.light_selected.connect(self.refresh)
         self.refresh()
 
     def _on_changed(self, old: Scene, new: Scene) -> None:
-        if old.lights != new.lights:
+        if old.lights != new.lights or type(old.technique) is not type(new.technique):
             self.refresh()
 
     def refresh(self) -> None:
@@ -57,13 +59,39 @@ class LampRow(QWidget):
             chip = self.chips.pop()
             chip.hide()
             chip.deleteLater()
+        self._arrange()
         shown = shining(lights)
         for i, (chip, light) in enumerate(zip(self.chips, lights, strict=True)):
             shines = any(light is one for one in shown)
             chip.show_light(light, light.name or str(i + 1), shines, i == self._editor.selected)
-        self.add.setEnabled(len(lights) < MAX_LIGHTS)
-        self.add.setToolTip("Add a lamp" if len(lights) < MAX_LIGHTS else f"At most {MAX_LIGHTS} lamps")
+        most = self._most_lamps()
+        self.add.setEnabled(len(lights) < most)
+        self.add.setToolTip("Add a lamp" if len(lights) < most else f"At most {most} lamps")
         self.refresh_theme()
+
+    def _most_lamps(self) -> int:
+        """Return how many lamps are of use: four for a single-lamp technique, too, since one may be chosen."""
+        used = techniques()[self._editor.scene.technique_id].max_lights
+        return min(MAX_LIGHTS, max(IN_A_ROW, used))
+
+    def _arrange(self) -> None:
+        """Put the chips into rows, and the button behind the last."""
+        count = max(1, -(-len(self.chips) // IN_A_ROW))
+        placed = sum(row.count() for row in self._rows) == len(self.chips) + len(self._rows) + 1
+        if placed and len(self._rows) == count:
+            return
+        for row in self._rows:
+            while row.count():
+                row.takeAt(0)
+            self._column.removeItem(row)
+        self._rows = [QHBoxLayout() for _ in range(count)]
+        for number, row in enumerate(self._rows):
+            row.setSpacing(4)
+            for chip in self.chips[IN_A_ROW * number : IN_A_ROW * (number + 1)]:
+                row.addWidget(chip)
+            row.addStretch(1)
+            self._column.addLayout(row)
+        self._rows[-1].addWidget(self.add)
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
@@ -71,7 +99,7 @@ class LampRow(QWidget):
 
     def _append_chip(self) -> None:
         index = len(self.chips)
-        chip = LampChip()
+        chip = LampChip(self)
         # Pressed, not clicked: what is dragged is the selected lamp.
         chip.pressed.connect(lambda: self._editor.select_light(index))
         chip.rename_wanted.connect(lambda: self._ask_name(index))
@@ -79,7 +107,6 @@ class LampRow(QWidget):
         chip.drag_started.connect(lambda: self._editor.begin(ORDER))
         chip.dragged.connect(self._drag_to)
         chip.drag_finished.connect(self._editor.end)
-        self._row.insertWidget(index, chip)
         if self.chips:
             QWidget.setTabOrder(self.chips[-1], chip)
         QWidget.setTabOrder(chip, self.add)
@@ -96,9 +123,17 @@ class LampRow(QWidget):
             self._editor.select_light(len(lights))
 
     # -- order ------------------------------------------------------------------------------------
-    def _drag_to(self, x: int) -> None:
+    def _drag_to(self, at: QPoint) -> None:
         """Bring the selected lamp to the place under the pointer."""
-        centres = [chip.geometry().center().x() for chip in self.chips]
+        tall = self.chips[0].height() + self._column.spacing()
+        line = max(0, min(at.y() // tall, len(self._rows) - 1))
+
+        def along(place: QPoint, row: int) -> int:
+            """Return a place on the line that the rows are, one after the other."""
+            return place.x() + row * 10 * self.width()
+
+        x = along(at, line)
+        centres = [along(chip.geometry().center(), i // IN_A_ROW) for i, chip in enumerate(self.chips)]
         chosen = self._editor.selected
         target = chosen
         while target > 0 and x < centres[target - 1]:
@@ -120,7 +155,7 @@ class LampRow(QWidget):
         lights.insert(end, lights.pop(start))
         if self._editor.change(ORDER, lights=tuple(lights)):
             self._editor.select_light(end)
-            self._row.activate()
+            self._column.activate()
 
     # -- names ------------------------------------------------------------------------------------
     def _ask_name(self, index: int) -> None:

@@ -32,6 +32,7 @@ class Slider(QSlider):
         self._pieces = pieces
         self._log = log
         self._default: float | None = None
+        self._faint = False
         self.key_step = 1.0
         self.setRange(0, _STEPS)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -49,6 +50,11 @@ class Slider(QSlider):
     def set_default(self, value: float) -> None:
         """Mark a value with a tick."""
         self._default = value
+        self.update()
+
+    def set_faint(self, faint: bool) -> None:
+        """Show that the value is not the slider's own."""
+        self._faint = faint
         self.update()
 
     def set_number(self, value: float) -> None:
@@ -150,11 +156,11 @@ class Slider(QSlider):
         painter.setBrush(QColor(theme.border))
         painter.drawRoundedRect(QRectF(left, middle - 2, length, 4), 2, 2)
         on = self.isEnabled()
-        painter.setBrush(QColor(theme.accent if on else theme.border))
+        painter.setBrush(QColor(theme.accent if on and not self._faint else theme.border))
         painter.drawRoundedRect(QRectF(left, middle - 2, at - left, 4), 2, 2)
         self._draw_ticks(painter, left, length, middle)
-        painter.setBrush(QColor(theme.text if on else theme.border))
-        painter.setPen(QPen(QColor(theme.panel), 2))
+        painter.setBrush(QColor(theme.panel if self._faint else theme.text if on else theme.border))
+        painter.setPen(QPen(QColor(theme.muted if self._faint else theme.panel), 2))
         painter.drawEllipse(QPointF(at, middle), _HANDLE - 1, _HANDLE - 1)
         if self.hasFocus():
             painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -185,6 +191,17 @@ class NumberBox(QDoubleSpinBox):
         self.setButtonSymbols(QDoubleSpinBox.ButtonSymbols.NoButtons)
         self.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self._hidden = False
+
+    def set_hidden(self, hidden: bool) -> None:
+        """Show a dash instead of the number, which is not known."""
+        if hidden != self._hidden:
+            self._hidden = hidden
+            self.setValue(self.value())
+
+    def textFromValue(self, value: float) -> str:
+        """Return the number as it is shown."""
+        return "\N{EN DASH}" if self._hidden else super().textFromValue(value)
 
     def event(self, event: QEvent) -> bool:
         """Leave Ctrl+Z to the window: what it takes back is the value, not the letters."""
@@ -212,28 +229,35 @@ class LabelledSlider(QWidget):
         What it says, in which unit ("deg" is shown as °), and the tooltip.
     pieces : tuple of (float, float)
         Range of the slider, in one or more pieces.
-    default : float
-        Value of the reset.
+    default : float, optional
+        Value of the reset; nothing where having no value is the default: then the reset emits `cleared`.
+    none_label : str
+        What having no value means, in the label: "from lamp".
     limits : (float, float), optional
         Range of the typed number; the slider's if not given.
     """
 
     #: The user chose this value.
     edited = Signal(float)
+    #: The user wants it to have no value of its own again.
+    cleared = Signal()
     #: The user took the slider, or let it go.
     drag_started = Signal()
     drag_finished = Signal()
 
     def __init__(
-        self, label: str, pieces: tuple[Range, ...], default: float, *, unit: str = "", tip: str = "",
+        self, label: str, pieces: tuple[Range, ...], default: float | None, *, unit: str = "", tip: str = "",
         decimals: int = 0, step: float = 1.0, limits: Range | None = None, log: bool = False,
+        none_label: str = "",
     ) -> None:  # fmt: skip
         super().__init__()
         self.default = default
+        self._text, self._none_label = label, none_label
         self.label = QLabel(label)
         self.slider = Slider(pieces, log)
         self.slider.key_step = step
-        self.slider.set_default(default)
+        if default is not None:
+            self.slider.set_default(default)
         self.number = NumberBox()
         self.number.setDecimals(decimals)
         self.number.setSingleStep(step)
@@ -248,7 +272,9 @@ class LabelledSlider(QWidget):
         self.set_number(default)
 
     def _name(self, label: str, unit: str, tip: str) -> None:
-        shown = f"{self.number.textFromValue(self.default)}{self.number.suffix()}"
+        shown = self._none_label
+        if self.default is not None:
+            shown = f"{self.number.textFromValue(self.default)}{self.number.suffix()}"
         for widget in (self, self.label, self.slider, self.number):
             widget.setToolTip(f"<p>{tip}</p><p>Double-click the name for {shown}.</p>" if tip else "")
         self.slider.setAccessibleName(label)
@@ -287,18 +313,45 @@ class LabelledSlider(QWidget):
         self.slider.sliderPressed.connect(self.drag_started)
         self.slider.sliderReleased.connect(self.drag_finished)
         self.number.valueChanged.connect(self.edited)
-        self.reset.clicked.connect(lambda: self.edited.emit(self.default))
-        self.label.mouseDoubleClickEvent = lambda event: self.edited.emit(self.default)  # type: ignore[method-assign]
+        self.reset.clicked.connect(self._back)
+        self.label.mouseDoubleClickEvent = lambda event: self._back()  # type: ignore[method-assign]
 
-    def set_number(self, value: float) -> None:
-        """Show a value without telling anybody."""
-        self.slider.set_number(value)
+    def _back(self) -> None:
+        if self.default is None:
+            self.cleared.emit()
+        else:
+            self.edited.emit(self.default)
+
+    def set_number(self, value: float | None, in_effect: float | None = None) -> None:
+        """Show a value without telling anybody.
+
+        Parameters
+        ----------
+        value : float or None
+            None: it has no value of its own; the label says what that means.
+        in_effect : float, optional
+            What no value amounts to, as far as it is known.
+        """
+        shown = value if value is not None else in_effect
+        if shown is None:
+            shown = self.number.minimum()
+        self.slider.set_number(shown)
+        self.slider.set_faint(value is None)
         self.number.blockSignals(True)
-        self.number.setValue(value)
+        self.number.setValue(shown)
         self.number.blockSignals(False)
         spoken = self.number.text()
+        if value is None:
+            spoken = self._none_label + (f", {spoken}" if in_effect is not None else "")
+        self.label.setText(
+            self._text if value is not None else f"{self._text} \N{MIDDLE DOT} {self._none_label}"
+        )
+        self.number.set_hidden(value is None and in_effect is None)
         self.slider.setAccessibleDescription(spoken)
-        self.reset.setVisible(abs(value - self.default) > 10 ** -self.number.decimals() / 2)
+        if value is None or self.default is None:
+            self.reset.setVisible(value != self.default)
+        else:
+            self.reset.setVisible(abs(value - self.default) > 10 ** -self.number.decimals() / 2)
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""

@@ -29,7 +29,7 @@ from sfumato import Camera
 from sfumato.geometry import color_bars
 from sfumato.scene.picking import surface_under
 
-from . import camera_moves, overlay
+from . import camera_moves, lamp_places, overlay
 from .clip_planes import ClipPlanes
 from .dial import MOVE
 from .editing import Editor
@@ -362,7 +362,7 @@ class Viewport(QWidget):
         light, view = self._editor.light, self.view
         if light is not None and view is not None:
             grow = self.height() / light_tool.radius_of(view)
-            fields = light_tool.moved(self._editor.scene, light, grow * dx, grow * dy)
+            fields = lamp_places.moved(self._editor.scene, light, grow * dx, grow * dy)
             self._editor.change_light(MOVE, True, **fields)
             self.lamp_moved.emit()
 

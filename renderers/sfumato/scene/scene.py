@@ -34,6 +34,10 @@ class TechniqueParams:
     def __post_init__(self) -> None:
         check(self)
 
+    def in_effect(self, name: str, scene: Scene, light: Light | None) -> float | None:
+        """Return what a parameter without a value amounts to in a scene, for a lamp; None if that is not known."""
+        return None
+
 
 @dataclass(frozen=True)
 class Scene:

@@ -7,12 +7,14 @@ from qtpy.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from sfumato import Light, Scene
 from sfumato.scene import fields_of, nearest_possible_tilt
+from sfumato.scene.light import shining
 from sfumato.techniques import techniques
 
 from .. import light_moves
 from ..dial import MOVE, SOFTEN, LightDial
 from ..editing import Editor
 from ..generated import ChoiceBox, ParamControl, controls_for, labelled, tooltip_of
+from ..lamp_place import LampForm, LampMore, LampPlace, radius_slider, show_radius
 from ..lamp_tools import LampTools
 from ..lamps import LampRow
 from ..rigs_row import RigsRow
@@ -39,6 +41,8 @@ class LightPage(Page):
         self.aperture = self._slider(
             "aperture", "Softness (aperture)", ((light_moves.MIN_APERTURE, light_moves.MAX_APERTURE),)
         )
+        self.place, self.form, self.lamp_more = LampPlace(editor), LampForm(editor), LampMore(editor)
+        self.radius = radius_slider(editor)
         self.rigs = RigsRow(editor, thumbnails)
         self.technique = self._technique_menu()
         self.own = Section("", "technique")
@@ -54,9 +58,10 @@ class LightPage(Page):
         for widget in (
             self.lamps,
             self._dial_and_tools(),
-            self.tilt,
-            self.rotation,
-            self.aperture,
+            # A lamp with a place has that instead of angles: the dial turns it about the subject.
+            _either(self.tilt, self.place),
+            _either(self.rotation, self.form),
+            _either(self.aperture, self.radius),
             self.rigs,
             self._technique_row(),
             self.note,
@@ -111,7 +116,7 @@ class LightPage(Page):
         box.setAccessibleName("What the lamp moves with")
         box.setToolTip(
             "<p>Viewer: the lamp turns with the camera.</p><p>Patient: it stays where it is when the camera "
-            "moves; tilt and rotation refer to the front view.</p>"
+            "moves; tilt and rotation refer to the front view.</p><p>A lamp with a place always stays there.</p>"
         )
         for word in param.choices:
             box.addItem(word.capitalize(), word)
@@ -178,11 +183,32 @@ class LightPage(Page):
             widget.setEnabled(light is not None)
         if light is None:
             return
+        self._show_place(light)
         self.tilt.slider.set_pieces(light_moves.tilt_ranges(light.aperture))
         self.tilt.set_number(light.tilt)
         self.rotation.set_number(light.rotation if light.rotation == 360 else light.rotation % 360)
         self.aperture.set_number(light.aperture)
-        self.attached.setCurrentIndex(self.attached.findData(light.attached))
+        self.attached.setCurrentIndex(self.attached.findData("patient" if light.placed else light.attached))
+
+    def _show_place(self, light: Light) -> None:
+        """Show what a lamp that stands somewhere has instead of angles."""
+        scene = self._editor.scene
+        known = light.kind in techniques()[scene.technique_id].kinds
+        flat = light.kind == "area" and light.shape == "rectangle"
+        for widget, shown in (
+            (self.tilt, not light.placed),
+            (self.rotation, not light.placed),
+            # Where it is taken for parallel light, its shadows are as soft as its aperture says.
+            (self.aperture, not light.placed or not known),
+            (self.place, light.placed),
+            (self.radius, light.placed and known and not flat),
+        ):
+            widget.setVisible(shown)
+        self.place.show_light(light)
+        self.form.show_light(light)
+        show_radius(self.radius, scene, light)
+        self.lamp_more.show_light(light, light.placed)
+        self.attached.setEnabled(not light.placed)
 
     def _show_technique(self, scene: Scene) -> None:
         technique = techniques()[scene.technique_id]
@@ -191,6 +217,7 @@ class LightPage(Page):
         if self._technique_type is not type(scene.technique):
             self._technique_type = type(scene.technique)
             self._rebuild(technique.title)
+            self._show_light()
         for control in self.controls:
             control.show_value()
         self._show_note(scene)
@@ -198,12 +225,15 @@ class LightPage(Page):
     def _show_note(self, scene: Scene) -> None:
         """Say what the technique leaves out of the lamps."""
         technique = techniques()[scene.technique_id]
-        shining = len(scene.active_lights)
+        lamps = shining(scene.lights)
         text = ""
         if not technique.lit:
             text = "This technique draws without light."
-        elif shining > technique.max_lights:
-            text = f"This technique uses {technique.max_lights} of {shining} lamps: the first that shines."
+        elif len(lamps) > technique.max_lights:
+            first = "the first that shines" if technique.max_lights == 1 else "the first that shine"
+            text = f"This technique uses {technique.max_lights} of {len(lamps)} lamps: {first}."
+        elif any(lamp.kind not in technique.kinds for lamp in lamps):
+            text = "This technique takes lamps with a place for parallel light from there."
         self.note.setText(text)
         self.note.setVisible(bool(text))
         if scene.volume is None:
@@ -217,14 +247,27 @@ class LightPage(Page):
         essential = controls_for(fields, "essential", self._editor, "technique.")
         rest = controls_for(fields, "more", self._editor, "technique.")
         self.attached.setParent(self)
+        self.lamp_more.setParent(self)
         self.own.clear()
         self.more.clear()
         self.own.set_title(title)
         self.own.setVisible(bool(essential))
         for control in essential:
             self.own.add(control)
+        self.more.add(self.lamp_more)
         self.more.add(labelled("Lamp fixed to", self.attached))
         for control in rest:
             self.more.add(control)
         self.controls = essential + rest
         self.rebuilt.emit()
+
+
+def _either(*widgets: QWidget) -> QWidget:
+    """Return one place of the column for widgets of which some are shown."""
+    place = QWidget()
+    column = QVBoxLayout(place)
+    column.setContentsMargins(0, 0, 0, 0)
+    column.setSpacing(4)
+    for widget in widgets:
+        column.addWidget(widget)
+    return place

@@ -6,58 +6,23 @@ The inner circle is the edge of the hemisphere; lamps in the ring around it shin
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numpy as np
 from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import QColor, QPainter, QPen
 
 from sfumato import Light, Scene
-from sfumato.scene import nearest_possible_tilt
-from sfumato.scene.light import PATIENT_BASIS
 
 from .. import light_moves, overlay
 from ..color_button import to_srgb
 from ..dial import MOVE
 from ..editing import Editor
+from ..lamp_places import moved, placed, seen_angles
 from ..theme import DARK
 from .handles import Handle, HandleTool, draw_label, draw_line
 from .view import PictureView, Place
 
 #: Part of the hemisphere's radius that an arrow key moves a lamp, and with Shift.
 STEP, LARGE_STEP = 0.02, 0.1
-
-
-def seen_angles(scene: Scene, light: Light) -> tuple[float, float]:
-    """Return a lamp's tilt and rotation in degrees as the eye sees it, whatever it is attached to."""
-    if scene.camera is None or (light.kind == "directional" and light.attached == "viewer"):
-        return light.tilt, light.rotation
-    target = scene.volume.center if scene.volume else scene.camera.focal_point
-    basis = scene.camera.basis()
-    axes = np.array([basis.right, basis.up, basis.back])
-    return light_moves.angles_of(axes @ light.towards(basis, target))
-
-
-def placed(scene: Scene, light: Light, x: float, y: float) -> dict[str, Any]:
-    """Return the fields of a lamp brought to a place of the disc, as far as its cone allows."""
-    tilt, rotation = light_moves.from_disc(x, y, seen_angles(scene, light)[1])
-    if scene.camera is None or (light.kind == "directional" and light.attached == "viewer"):
-        return {"tilt": nearest_possible_tilt(tilt, light.aperture), "rotation": rotation}
-    basis = scene.camera.basis()
-    towards = np.array([basis.right, basis.up, basis.back]).T @ light_moves.direction(tilt, rotation)
-    if light.kind != "directional":
-        target = np.asarray(scene.volume.center if scene.volume else scene.camera.focal_point)
-        distance = float(np.linalg.norm(np.asarray(light.position) - target))
-        return {"position": tuple(float(v) for v in target + distance * towards)}
-    patient = np.array([PATIENT_BASIS.right, PATIENT_BASIS.up, PATIENT_BASIS.back])
-    tilt, rotation = light_moves.angles_of(patient @ towards)
-    return {"tilt": nearest_possible_tilt(tilt, light.aperture), "rotation": rotation}
-
-
-def moved(scene: Scene, light: Light, dx: float, dy: float) -> dict[str, Any]:
-    """Return the fields of a lamp moved over the disc by (dx, dy) radii, as far as its cone allows."""
-    x, y = light_moves.to_disc(*seen_angles(scene, light))
-    return placed(scene, light, x + dx, y + dy)
 
 
 class LightTool(HandleTool):
