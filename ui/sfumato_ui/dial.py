@@ -8,6 +8,7 @@ wheel changes the intensity.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from qtpy.QtCore import QPointF, QSize, Qt, Signal
@@ -26,10 +27,12 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from sfumato import Light
 from sfumato.scene import nearest_possible_tilt
+from sfumato.scene.lamps import half_angles
 from sfumato.scene.light import shining
 
 from . import light_moves
 from .editing import Editor
+from .lamp_places import dial_angles, middle_of, placed
 from .theme import current_theme
 
 #: Distance in pixels within which a handle is hit.
@@ -40,7 +43,7 @@ MOVE, SOFTEN = "Move the light", "Change the softness"
 
 
 class LightDial(QWidget):
-    """Shows all directional lamps of a scene; edits the selected one."""
+    """Shows all lamps of a scene; edits the selected one. A lamp with a place turns about the subject's middle."""
 
     #: The user takes part in a drag of the light (for the hint).
     used = Signal()
@@ -80,7 +83,8 @@ class LightDial(QWidget):
         """Show the scene's lamps."""
         light = self._editor.light
         if light is not None:
-            place = f"tilt {light.tilt:.0f}°, rotation {light.rotation % 360:.0f}°"
+            tilt, rotation = self._angles(light)
+            place = f"tilt {tilt:.0f}°, rotation {rotation % 360:.0f}°"
             self.setAccessibleDescription(f"{light.name}: {place}, aperture {light.aperture:.0f}°")
         self.setEnabled(light is not None)
         self.update()
@@ -102,9 +106,16 @@ class LightDial(QWidget):
         """Return the place of the disc at a point of the widget."""
         return (point.x() - self.width() / 2) / self.radius, (self.height() / 2 - point.y()) / self.radius
 
+    def _angles(self, light: Light) -> tuple[float, float]:
+        return (
+            dial_angles(self._editor.scene, light)
+            if self._editor.scene.camera
+            else (light.tilt, light.rotation)
+        )
+
     def lamp_point(self, light: Light) -> QPointF:
         """Return where a lamp's dot is."""
-        return self.point(light_moves.to_disc(light.tilt, light.rotation))
+        return self.point(light_moves.to_disc(*self._angles(light)))
 
     def handle_point(self, light: Light) -> QPointF:
         """Return where the handle of a lamp's aperture is."""
@@ -136,7 +147,7 @@ class LightDial(QWidget):
 
     def _grip_at(self, at: QPointF, light: Light) -> str:
         """Tell what lies under the pointer, selecting another lamp if its dot does."""
-        if _distance(at, self.handle_point(light)) <= HIT:
+        if not light.placed and _distance(at, self.handle_point(light)) <= HIT:
             return "aperture"
         dots = [(_distance(at, self.lamp_point(lamp)), i) for i, lamp in enumerate(self._editor.scene.lights)]
         nearest, index = min(dots)
@@ -155,7 +166,7 @@ class LightDial(QWidget):
             aperture, start = self._start
             self.set_aperture(aperture + self._angle_to(event.position(), light) - start)
         else:
-            on_handle = _distance(event.position(), self.handle_point(light)) <= HIT
+            on_handle = not light.placed and _distance(event.position(), self.handle_point(light)) <= HIT
             self.setCursor(Qt.CursorShape.SizeAllCursor if on_handle else Qt.CursorShape.PointingHandCursor)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
@@ -167,6 +178,9 @@ class LightDial(QWidget):
     def _move_to(self, at: QPointF) -> None:
         light = self._editor.light
         assert light is not None
+        if light.placed:
+            self._editor.change_light(MOVE, **placed(self._editor.scene, light, *self.place(at)))
+            return
         tilt, rotation = light_moves.from_disc(*self.place(at), light.rotation)
         self._editor.change_light(MOVE, tilt=nearest_possible_tilt(tilt, light.aperture), rotation=rotation)
 
@@ -192,6 +206,11 @@ class LightDial(QWidget):
         tip = {Qt.Key.Key_Up: step, Qt.Key.Key_Down: -step}.get(Qt.Key(event.key()))
         if light is None or (turn is None and tip is None):
             event.ignore()
+        elif light.placed:
+            tilt, rotation = self._angles(light)
+            tilt = min(180.0, max(0.0, tilt + (tip or 0.0)))
+            place = light_moves.to_disc(tilt, rotation + (turn or 0.0))
+            self._editor.change_light(MOVE, True, **placed(self._editor.scene, light, *place))
         elif turn is not None:
             self._editor.change_light(MOVE, True, rotation=(light.rotation + turn) % 360.0)
         else:
@@ -228,7 +247,8 @@ class LightDial(QWidget):
             if i != self._editor.selected:
                 self._draw_lamp(painter, light, False)
         if self._editor.light is not None:
-            self._draw_cone(painter, self._editor.light)
+            if not self._editor.light.placed:
+                self._draw_cone(painter, self._editor.light)
             self._draw_lamp(painter, self._editor.light, True)
 
     def _draw_cone(self, painter: QPainter, light: Light) -> None:
@@ -256,10 +276,21 @@ class LightDial(QWidget):
             painter.setPen(QPen(QColor("#f2b34c"), 2))
             painter.drawEllipse(at, 9.0, 9.0)
 
+    def _as_parallel(self, light: Light) -> Light:
+        """Return a lamp as the ball is lit by it: one with a place from there, as wide as the middle sees it."""
+        scene = self._editor.scene
+        if not light.placed or scene.camera is None:
+            return light
+        tilt, rotation = self._angles(light)
+        wide = float(half_angles(light, middle_of(scene)[None])[0])
+        aperture = max(light_moves.MIN_APERTURE, min(wide, light_moves.largest_aperture(tilt)))
+        tilt = nearest_possible_tilt(tilt, aperture)
+        return replace(light, kind="directional", tilt=tilt, rotation=rotation, aperture=aperture)
+
     def _shaded_ball(self) -> QImage:
         ratio = self.devicePixelRatioF()
         pixels = round(2 * self.radius * ratio)
-        lights = self._editor.scene.lights
+        lights = tuple(self._as_parallel(light) for light in self._editor.scene.lights)
         if self._ball_key != (pixels, lights):
             self._ball_key = (pixels, lights)
             self._ball = ball_image(lights, pixels)

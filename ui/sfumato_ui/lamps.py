@@ -39,7 +39,7 @@ class LampRow(QWidget):
         self._rows: list[QHBoxLayout] = []
         self.chips: list[LampChip] = []
         self.name_line: NameLine | None = None
-        self.add = QToolButton()
+        self.add = QToolButton(self)
         self.add.setAccessibleName("Add a lamp")
         self.add.clicked.connect(self._add)
         editor.changed.connect(self._on_changed)

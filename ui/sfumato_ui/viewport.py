@@ -65,8 +65,11 @@ class Viewport(QWidget):
         self._last = QPointF()
         self._tool = "orbit"
         self.clips = ClipPlanes(editor)
+        self._light_tool = LightTool(editor)
+        #: Whether the lamp in the hand has a place.
+        self._carried = False
         #: The tools that have handles.
-        self.tools: dict[str, HandleTool] = {"light": LightTool(editor), "clip": ClipTool(editor, self.clips)}
+        self.tools: dict[str, HandleTool] = {"light": self._light_tool, "clip": ClipTool(editor, self.clips)}
         self.hint = ""
         self.empty_text = "Drop a volume or a folder here, or press Ctrl+O"
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -238,6 +241,8 @@ class Viewport(QWidget):
         label = LABELS.get(self._mode, "")
         if self._mode == "handle":
             label = self._take_handle(event.position())
+        if self._mode == "light":
+            self._take_lamp(event.position())
         if self._mode:
             self._editor.begin(label)
             if self._mode == "orbit":
@@ -251,6 +256,11 @@ class Viewport(QWidget):
         if not label:
             self._mode = "light" if self._tool == "light" else "orbit"
         return label or LABELS[self._mode]
+
+    def _take_lamp(self, at: QPointF) -> None:
+        """Let the selected lamp follow the pointer, if it stands somewhere; others move over the hemisphere."""
+        view = self.view
+        self._carried = view is not None and self._light_tool.take(view, (at.x(), at.y()))
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Re-centre on the surface under the cursor; on a handle, a double-click is a click."""
@@ -274,7 +284,10 @@ class Viewport(QWidget):
         dx, dy = delta.x() / self.height(), -delta.y() / self.height()
         camera = self._editor.scene.camera
         view, at = self.view, event.position()
-        if self._mode == "light":
+        if self._mode == "light" and self._carried and view is not None:
+            self._light_tool.drag(view, (at.x(), at.y()))
+            self.lamp_moved.emit()
+        elif self._mode == "light":
             self._move_light(dx, dy)
         elif self._mode == "handle" and view is not None:
             self.tools[self._tool].drag(view, (at.x(), at.y()))
@@ -305,9 +318,13 @@ class Viewport(QWidget):
         super().leaveEvent(event)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom about the cursor."""
-        camera = self._editor.scene.camera
+        """Zoom about the cursor; a lamp in the hand, or under the Light tool, moves along the view."""
+        camera, view = self._editor.scene.camera, self.view
         if camera is None or not event.angleDelta().y():
+            return
+        lit = self._mode == "light" or (self._tool == "light" and self._mode in ("", "handle"))
+        at, notches = event.position(), event.angleDelta().y() / 120
+        if lit and view is not None and self._light_tool.wheel(view, (at.x(), at.y()), notches):
             return
         x = (event.position().x() - self.width() / 2) / self.height()
         y = (self.height() / 2 - event.position().y()) / self.height()
@@ -339,7 +356,7 @@ class Viewport(QWidget):
         elif tool is not None and view is not None and turn and tool.nudge(view, *turn, self._shift(event)):
             self.update()
         elif camera is not None and turn and self._shift(event):
-            self._move_light(0.02 * turn[0], 0.02 * turn[1])
+            self._nudge_light(*turn)
         elif camera is not None and turn:
             self._set_camera(
                 camera_moves.orbit(camera, turn[0] * ARROW_DEGREES, turn[1] * -ARROW_DEGREES), "orbit"
@@ -356,6 +373,16 @@ class Viewport(QWidget):
     # -- edits ------------------------------------------------------------------------------------
     def _set_camera(self, camera: Camera, mode: str) -> None:
         self._editor.change(LABELS[mode], True, camera=camera)
+
+    def _nudge_light(self, right: int, up: int) -> None:
+        """Move the selected lamp by an arrow key with another tool."""
+        light, view = self._editor.light, self.view
+        if light is not None and view is not None and light.placed:
+            fields = self._light_tool.shifted(view, light, right, up, large=False)
+            self._editor.change_light(MOVE, True, **fields)
+            self.lamp_moved.emit()
+        else:
+            self._move_light(0.02 * right, 0.02 * up)
 
     def _move_light(self, dx: float, dy: float) -> None:
         """Move the selected lamp over the hemisphere by (dx, dy) picture heights, y up."""
