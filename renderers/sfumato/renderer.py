@@ -156,7 +156,9 @@ class Accumulation:
     size : (int, int)
         Pixels drawn: the size asked for times the quality's scale.
     frames : int
-        Frames so far.
+        Frames so far. Those before the light has settled (``Quality.progressive``) take each other's place.
+    settled : bool
+        Whether the light of the frames so far is as good as it gets.
     """
 
     def __init__(
@@ -174,6 +176,7 @@ class Accumulation:
         self.quality = quality
         self._corner, self._whole = corner, whole
         self.frames = 0
+        self.settled = True
         self._total: Target | None = None
         self._latest: Target | None = None
 
@@ -189,8 +192,9 @@ class Accumulation:
         device.make_current()
         if self._latest is None:
             self._latest, self._total = Target(device, self.size), Target(device, self.size)
+        number = self.frames if self.settled else 0
         frame = Frame(
-            device, self.scene, self.size, self._latest, self.quality, self.frames, self._corner, self._whole
+            device, self.scene, self.size, self._latest, self.quality, number, self._corner, self._whole
         )
         pieces = self.renderer.painter(self.scene).paint(frame)
         with device.store.frame():
@@ -204,9 +208,11 @@ class Accumulation:
                     device.make_current()
                 pieces.close()
         assert self._total is not None
+        if number == 0:
+            self._total.clear()
         self.renderer.add(self._latest, self._total)
         device.wait()
-        self.frames += 1
+        self.frames, self.settled = number + 1, frame.settled
 
     def picture(self) -> np.ndarray:
         """Return the picture so far: uint8 sRGB, straight alpha, shape (height, width, 4), row 0 on top."""

@@ -40,8 +40,10 @@ def test_every_texel_of_a_packed_volume_is_found_both_ways() -> None:
     packed = packed_voxels(pyramid, packing)
     assert packed.shape[::-1] == packing.size
     for block in np.argwhere(levels != NONE):
-        x, y, z, level = map(int, packing.index[tuple(block)])
+        x, y, z, both = map(int, packing.index[tuple(block)])
+        level, around = both & 255, tuple(slice(max(b - 1, 0), b + 2) for b in block)
         assert level == levels[tuple(block)]
+        assert both >> 8 == levels[around].min()
         res = 1 << level
         expected = pyramid.levels[level][tuple(slice(b * res, (b + 1) * res) for b in block)]
         np.testing.assert_array_equal(packed[z : z + res, y : y + res, x : x + res], expected)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import moderngl
@@ -53,18 +54,31 @@ class Target:
 
 
 class LayerTarget:
-    """Renders into 2D state textures and, beside them, into one layer of an array or 3D texture.
+    """Renders into 2D state textures and, beside them, into layers of array or 3D textures.
 
-    moderngl cannot attach a layer; a framebuffer is made with a stand-in texture, which `use` replaces.
+    moderngl cannot attach a layer; a framebuffer is made with stand-in textures, which `use` replaces.
+
+    Parameters
+    ----------
+    states : texture
+        The 2D textures, if there are any.
+    layers : int
+        How many layers.
+    size : (int, int), optional
+        Their size, where there is no state to tell it.
     """
 
-    def __init__(self, device: Device, *states: Any) -> None:
+    def __init__(
+        self, device: Device, *states: Any, layers: int = 1, size: tuple[int, int] | None = None
+    ) -> None:
         self.device = device
         self.states = states
-        self._stand_in = device.ctx.texture(states[0].size, 1, dtype="f2")
-        self.fbo = device.ctx.framebuffer([*states, self._stand_in])
-        #: The states alone, for copies.
-        self.plain = device.ctx.framebuffer(list(states))
+        self.layers = layers
+        self.size = size or states[0].size
+        self._stand_ins = [device.ctx.texture(self.size, 1, dtype="f2") for _ in range(layers)]
+        self.fbo = device.ctx.framebuffer([*states, *self._stand_ins])
+        #: The states alone, for copies; where there are none, the stand-ins.
+        self.plain = device.ctx.framebuffer(list(states)) if states else self.fbo
 
     @property
     def state(self) -> Any:
@@ -72,16 +86,25 @@ class LayerTarget:
         return self.states[0]
 
     def use(self, texture: Any, layer: int) -> None:
-        """Bind, with a layer of an array or 3D texture as the last attachment."""
+        """Bind, with consecutive layers of an array or 3D texture as the last attachments."""
         self.fbo.use()
-        self.device.attach_layer(len(self.states), texture, layer)
+        for k in range(self.layers):
+            self.device.attach_layer(len(self.states) + k, texture, layer + k)
+
+    def use_each(self, textures: Sequence[Any], layer: int) -> None:
+        """Bind, with the same layer of several textures as the last attachments."""
+        self.fbo.use()
+        for k, texture in enumerate(textures):
+            self.device.attach_layer(len(self.states) + k, texture, layer)
 
     def clear_layer(self, value: float) -> None:
-        """Fill the layer that `use` attached."""
+        """Fill the first layer that `use` attached."""
         self.device.clear_attachment(len(self.states), value)
 
     def release(self) -> None:
         """Free the GPU objects, but not the state textures."""
+        if self.plain is not self.fbo:
+            self.plain.release()
         self.fbo.release()
-        self.plain.release()
-        self._stand_in.release()
+        for stand_in in self._stand_ins:
+            stand_in.release()

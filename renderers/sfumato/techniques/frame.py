@@ -23,17 +23,20 @@ class Quality:
         Factor on the scene's sampling distance.
     light : float
         Factor on the size of the light's texels.
+    progressive : bool
+        Whether light that takes long may come by and by, frame after frame; otherwise it is waited for.
     """
 
     scale: float = 1.0
     step: float = 1.0
     light: float = 1.0
+    progressive: bool = False
 
 
 #: Everything that was asked for.
 FULL = Quality()
 #: While the user drags.
-DRAG = Quality(scale=0.5, step=2.0, light=2.0)
+DRAG = Quality(scale=0.5, step=2.0, light=2.0, progressive=True)
 
 
 @dataclass
@@ -42,7 +45,8 @@ class Frame:
 
     ``jitter`` is the offset of the slices or samples in units of the sampling distance, in [0, 1);
     ``pixel_jitter`` the offset of the rays in pixels, each in [-0.5, 0.5]. A frame may be a part of a ``whole``
-    larger picture: then ``corner`` is its lower left pixel, counted from the whole's lower left.
+    larger picture: then ``corner`` is its lower left pixel, counted from the whole's lower left. A painter tells
+    by ``settled`` whether its light is as good as it gets; if not, the next frame takes this one's place.
     """
 
     device: Device
@@ -53,6 +57,7 @@ class Frame:
     index: int = 0
     corner: tuple[int, int] = (0, 0)
     whole: tuple[int, int] | None = None
+    settled: bool = True
 
     @property
     def whole_size(self) -> tuple[int, int]:

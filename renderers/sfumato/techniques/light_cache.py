@@ -90,13 +90,17 @@ class LightCache:
 
         It is not kept before `keep` says that the sweep is complete.
         """
+        return self.make_room(size, in_use) or self._make(size)
+
+    def make_room(self, size: tuple[int, int, int], in_use: int = 0) -> Any:
+        """Give up old textures until one of a size fits; returns one that has that size already, or None."""
         wanted = math.prod(size) * self._bytes
         while len(self._kept) > in_use and self.bytes_in_use + wanted > self.budget:
             _, old = self._kept.popitem(last=False)
             if old.size == size:
                 return old
             old.release()
-        return self._make(size)
+        return None
 
     def keep(self, key: Hashable, texture: Any) -> None:
         """Keep a texture whose sweep is complete."""

@@ -1,10 +1,12 @@
 // The one ray caster: marches the segments first..last-1 of every view ray, front to back, over what earlier passes left.
 //
 // SLICES     samples lie on planes that face the viewer; otherwise at equal distances along each ray
-// SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows, 3: light from lamps' textures, 4: light kept in the volume's space
+// SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows, 3: light from lamps' textures, 4: light kept in the volume's space,
+//            5: light of each point's neighbourhood
 // LIGHTS     number of lights
 // LITERAL    1: the published occlusion forms, which light a sample by its opacity, not by the slab term
 // SPECULAR   the swept lights have gradient-based highlights
+// LOCAL      the lamps' light is combined with that of each point's neighbourhood. 0: not, 1: product, 2: mix
 // EMISSION   tissue gives off light
 #include "ray"
 #include "volume"
@@ -36,6 +38,9 @@ uniform int u_rear[4];               // 1: behind the subject, its light enters 
 #include "light_volume"
 #elif SHADING == 4
 #include "world_light"
+#endif
+#if LOCAL > 0
+#include "local_light"
 #endif
 
 layout(location = 0) out vec4 o_color;
@@ -90,6 +95,9 @@ vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float dept
         }
 #endif
     }
+#if LOCAL > 0
+    result = with_lamps(alpha * color, light_around(t), result);
+#endif
     return result;
 }
 #endif
@@ -160,6 +168,8 @@ void main() {
 #elif SHADING == 4
             float z_mid = 0.5 * (z + z_next);
             vec3 c = world_lit(color, alpha, a + b * z_mid, ray.origin + ray.direction * z_mid, view);
+#elif SHADING == 5
+            vec3 c = local_lit(color, alpha, a + b * (0.5 * (z + z_next)), view);
 #elif SHADING == 2
             vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
 #else

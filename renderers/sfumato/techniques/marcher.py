@@ -117,7 +117,7 @@ def blocks_along(view: View, frame: Frame, material: Material) -> tuple[np.ndarr
 
 
 #: How the march shader shades a sample.
-UNLIT, SWEPT, PHONG, VOLUMES, WORLD = 0, 1, 2, 3, 4
+UNLIT, SWEPT, PHONG, VOLUMES, WORLD, LOCAL = 0, 1, 2, 3, 4, 5
 
 
 @dataclass(frozen=True)
@@ -131,6 +131,8 @@ class Variant:
     near: int = 0
     specular: bool = False
     facing: bool = False
+    local: int = 0
+    joined: bool = False
 
 
 class Marcher:
@@ -147,7 +149,7 @@ class Marcher:
         defines = (
             ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
             ("NEAR", variant.near), ("SHADING", variant.shading), ("SPECULAR", int(variant.specular)),
-            ("FACING", int(variant.facing)),
+            ("FACING", int(variant.facing)), ("LOCAL", variant.local), ("JOINED", int(variant.joined)),
             ("EMISSION", int(material.tables.emits)),
             *material_defines(material),
         )  # fmt: skip

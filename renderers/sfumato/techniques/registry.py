@@ -84,6 +84,8 @@ class Technique:
 FOLDERS = (
     "cone",
     "multidirectional",
+    "extinction",
+    "local_occlusion",
     "raycast",
     "slices",
     "half_angle",

@@ -16,6 +16,8 @@ from .marcher import Material
 
 #: Sides of a grid are multiples of this.
 MULTIPLE = 4
+#: Cells before a surface at which its light is looked up, where its slope is known.
+LIFT = 1.0
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,7 @@ class CellGrid:
         return {
             "u_world_scale": tuple((1 / extent).tolist()),
             "u_world_offset": tuple((-np.asarray(self.low) / extent).tolist()),
+            "u_world_lift": LIFT * self.cell_mm,
         }
 
 

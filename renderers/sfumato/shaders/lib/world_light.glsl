@@ -9,22 +9,11 @@ uniform sampler3D u_world_lamps;     // rgb: visibilities of lamps 1 to 3
 uniform vec3 u_world_scale;          // the volume's texture coordinates to these textures'
 uniform vec3 u_world_offset;
 uniform vec4 u_lamp_place[4];        // world: place of a lamp in mm (w = 1), or the unit vector towards it (w = 0)
+uniform float u_world_lift;          // mm before a surface at which its light is looked up
 uniform float u_facing;              // how much a surface's slope counts, 0 to 1
 
 // Colour that a segment of opacity alpha sends to the eye; t and p_world are its middle.
 vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
-    vec3 at = t * u_world_scale + u_world_offset;
-    vec4 light = textureLod(u_world_light, at, 0.0);
-    vec3 sum = light.rgb, shine = vec3(0.0);
-#if LIGHTS > 0
-    float visible[4];
-    visible[0] = light.a;
-#if LIGHTS > 1
-    vec3 lamps = textureLod(u_world_lamps, at, 0.0).rgb;
-    visible[1] = lamps.r;
-    visible[2] = lamps.g;
-    visible[3] = lamps.b;
-#endif
 #if FACING || SPECULAR
     vec3 normal = volume_gradient(t);
     float strength = length(normal);
@@ -32,6 +21,19 @@ vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
     normal /= max(strength, 1e-20);
     // Turned to the viewer, since a gradient has no outside.
     if (dot(normal, view) < 0.0) normal = -normal;
+    // A surface gets the light that is just before it; within it are the steps of the cells.
+    t += mat3(u_texture_from_world) * normal * (u_world_lift * surface);
+#endif
+    vec4 light = textureLod(u_world_light, t * u_world_scale + u_world_offset, 0.0);
+    vec3 sum = light.rgb, shine = vec3(0.0);
+#if LIGHTS > 0
+    float visible[4];
+    visible[0] = light.a;
+#if LIGHTS > 1
+    vec3 lamps = textureLod(u_world_lamps, t * u_world_scale + u_world_offset, 0.0).rgb;
+    visible[1] = lamps.r;
+    visible[2] = lamps.g;
+    visible[3] = lamps.b;
 #endif
     for (int l = 0; l < LIGHTS; ++l) {
         float factor = visible[l];

@@ -8,4 +8,28 @@ after the other is added, and the mean so far is shown.
 The volume is cut into blocks of 16^3 voxels (`pyramid`), each as coarse as can be without its looking otherwise
 under the transfer function (`levels`), packed into one texture (`packing`). Light is gathered for the packed texels
 alone; coarse blocks take longer steps.
+
+Use it for shapes that hide in each other's shadows, noisy data (no gradients are needed), and to see what a bright
+fragment lies next to. Lamps shade surfaces, or cast the shadows of `cone`, and are mixed with it or multiplied.
+
+Where we differ from the paper: the directions' weights are the faces' solid angles; what gives off light does so by
+its opacity, so that what is not there does not shine; the reverse index has an entry a block (`packing`), so blocks
+of all levels can show something, but are not coarser than 4^3 unless asked; transfer functions of value and gradient
+are read from the volume itself; a preferred direction and a ray to the lamp alone are choices.
+
+Limits: nothing farther than the radius casts a shadow; light in coarse blocks is as coarse as they are.
 """
+
+from ..registry import Technique
+from .params import LocalOcclusionParams
+
+TECHNIQUES = (
+    Technique(
+        "local-occlusion",
+        "Local ambient occlusion",
+        "Light from all around that only what is near takes away, and tissue that gives off light",
+        LocalOcclusionParams,
+        "..techniques.local_occlusion.passes:LocalOcclusionPainter",
+        source="Hernell2007",
+    ),
+)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import minimum_filter
 
 from .levels import TEXELS
 from .pyramid import EDGE, FINEST, LEVELS, Pyramid, by_blocks
@@ -26,7 +27,8 @@ class Packing:
     Attributes
     ----------
     index : ndarray, uint16, shape (bz, by, bx, 4)
-        Of each block its first texel (x, y, z) in the packed texture and its level, `NONE` if it is empty.
+        Of each block its first texel (x, y, z) in the packed texture; in the low byte of the fourth its level
+        (`NONE` if it is empty), in the high byte the lowest level of it and its neighbours.
     bricks : ndarray, uint32, shape (nz, ny, nx, 2)
         Of each brick its level, and where its blocks begin in `blocks`.
     blocks : ndarray, uint16, shape (n, 4)
@@ -52,7 +54,7 @@ class Packing:
     @property
     def levels(self) -> np.ndarray:
         """Levels of the blocks, `NONE` where empty; shape (bz, by, bx)."""
-        return self.index[..., 3]
+        return self.index[..., 3] & 255
 
     @property
     def texels(self) -> int:
@@ -73,7 +75,7 @@ def pack(levels: np.ndarray, longest: int = 2048) -> Packing:
     bricks = np.zeros((int(np.prod(shape)), 2), dtype=np.uint32)
     bricks[:, 0] = NONE
     index = np.zeros((*levels.shape, 4), dtype=np.uint16)
-    index[..., 3] = levels
+    index[..., 3] = levels | minimum_filter(levels, 3, mode="nearest").astype(np.uint16) << 8
     lists, brick, first = [], 0, 0
     for level in reversed(range(LEVELS)):
         per_brick, edge = 8 ** (FINEST - level), 1 << (FINEST - level)
@@ -85,7 +87,7 @@ def pack(levels: np.ndarray, longest: int = 2048) -> Packing:
         own = brick + order // per_brick
         corner = np.stack(np.unravel_index(own, shape)[::-1], axis=-1) * EDGE
         sub = np.stack(np.unravel_index(order % per_brick, (edge,) * 3)[::-1], axis=-1) << level
-        index[tuple(at.T)] = np.concatenate([corner + sub, np.full((len(at), 1), level)], axis=1)
+        index[(*at.T, slice(3))] = corner + sub
         bricks[brick : brick + number[level], 0] = level
         bricks[brick : brick + number[level], 1] = first + np.arange(number[level]) * per_brick
         lists.append(entries)

@@ -41,6 +41,11 @@ class Pyramid:
         return z, y, x
 
     @property
+    def extremes(self) -> np.ndarray:
+        """Smallest and largest value (0 to 1) of each block; shape (2, blocks)."""
+        return np.asarray(self.samples[FINEST, :, SAMPLES:].T / np.iinfo(self.samples.dtype).max)
+
+    @property
     def size(self) -> int:
         """Bytes on the CPU."""
         return sum(level.nbytes for level in self.levels) + self.samples.nbytes

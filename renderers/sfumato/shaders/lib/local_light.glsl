@@ -1,0 +1,48 @@
+// Light that each point gets from its neighbourhood (Hernell2007), gathered over packed blocks.
+//
+// LOCAL      how lamps are combined with it: 1 product, 2 mix
+// LIGHTS     number of lamps
+// FACING     surfaces that turn away from a lamp are darker
+#include "blocks"
+
+uniform sampler3D u_map;         // rgb: sum over directions; a: sum of their weights
+uniform float u_brightness, u_bias;
+uniform float u_share;           // of the lamps in a mix
+uniform float u_facing;          // how much a surface's slope counts, 0 to 1
+
+// Linear RGB from all around at a place of the volume: the mean of the directions so far.
+vec3 light_around(vec3 t) {
+    vec4 sum = packed_value(u_map, t);
+    return u_brightness * (u_bias + sum.rgb / max(sum.a, 1e-6));
+}
+
+// Both together; the lamps' light is that which reaches the eye, that from all around is so for `color`.
+vec3 with_lamps(vec3 color, vec3 around, vec3 lamps) {
+#if LOCAL == 1
+    return around * lamps;
+#else
+    return mix(color * around, lamps, u_share);
+#endif
+}
+
+#if SHADING == 5
+// Colour that a segment of opacity alpha sends to the eye; t is its middle.
+vec3 local_lit(vec3 color, float alpha, vec3 t, vec3 view) {
+    vec3 around = light_around(t);
+    color *= alpha;
+#if LIGHTS > 0
+    vec3 lamps = vec3(0.0);
+    vec3 normal = volume_gradient(t);
+    float strength = length(normal), surface = strength / (strength + u_edge);
+    normal /= max(strength, 1e-20);
+    // Turned to the viewer, since a gradient has no outside.
+    if (dot(normal, view) < 0.0) normal = -normal;
+    for (int l = 0; l < LIGHTS; ++l) {
+        lamps += u_light_color[l] * mix(1.0, max(dot(normal, u_towards[l]), 0.0), u_facing * surface);
+    }
+    return with_lamps(color, around, color * lamps);
+#else
+    return color * around;
+#endif
+}
+#endif

@@ -1,0 +1,145 @@
+// Light of one lamp that reaches a layer of cells, by cones of cuboids (Schlegel2011, Eq. 7, Fig. 7; methods.md).
+//
+// POINTS     0: the lamp is a disc seen from each cell (a parallel light's cone, a sphere), 1: it is given by places on it
+// CONES      the lamp's cone is taken apart into so many narrow ones
+#include "sums"
+
+uniform int u_layer;
+uniform sampler3D u_near;            // where light matters
+uniform vec3 u_edge_mm;              // a cell's edges in mm
+uniform float u_cell_mm;             // their mean, to which the cells' optical depths refer
+uniform vec4 u_lamp;                 // in mm from the corner of cell 0 along the volume's axes: place (w = 1), or unit vector towards it (w = 0)
+uniform float u_tangent;             // of the lamp's half angle; < 0: from its radius
+uniform float u_radius;              // mm
+uniform vec2 u_disc[CONES];          // places of the narrow cones in the unit disc
+uniform vec3 u_place[CONES];         // places on the lamp, mm
+uniform float u_part;                // radius of a narrow cone: share of the disc's (POINTS 0), or mm
+uniform vec3 u_shines;               // unit vector in which an area lamp shines; zero: in all directions
+uniform vec3 u_beam;                 // unit vector of a spot's beam
+uniform vec2 u_beam_edge;            // cosines at which the beam is dark and full; x >= y: not a spot
+uniform float u_reach;               // mm at which the light has halved; <= 0: everywhere the same
+uniform float u_first;               // first section, in cells along the dominant axis
+uniform float u_growth;              // relative growth of the sections
+uniform float u_strength;
+
+layout(location = 0) out float o_light;
+
+const int MOST = 160;                // sections of a cone
+const float DARK = 3e-4;             // light that is as good as none
+
+// Light on its way through a cone, from section to section: background * (1 - share + share * within).
+//
+// Dense matter fills a share of a section's width, light passes beside it. A thing that goes on in the next section
+// takes away no more of what passes beside; one that ends and another that begins do. The mean of all that is in the
+// cone (the paper's) would let a rod in a wide cone cast the shadow of a wall.
+struct Passing { float background, share, within; };
+
+float light_of(Passing p) { return p.background * (1.0 - p.share + p.share * p.within); }
+
+// Through a section whose mean matter is known, so many cells long, in so many layers.
+void pass(inout Passing p, vec4 mean, float cells, float layers) {
+    // What fills one layer of several may be a wall across the way. Then it has as much surface: two sides in a long
+    // section, of which a short one may see but one; or it goes on from the section before.
+    float sides = mix(1.5, 0.6, clamp((layers - 2.0) / 4.0, 0.0, 1.0)) * mean.a * layers;
+    float share = clamp(max(mean.b, min(mean.b * layers, max(sides, p.share))), 0.0, 1.0);
+    if (share < p.share) {
+        // What was dimmed and is no longer in the way is beside from now on.
+        float beside = max((1.0 - p.share + (p.share - share) * p.within) / max(1.0 - share, 1e-6), 1e-6);
+        p.background *= beside;
+        p.within = min(p.within / beside, 1.0);
+    } else {
+        p.within = (p.share * p.within + share - p.share) / max(share, 1e-6);
+    }
+    p.share = share;
+    p.within *= exp(-mean.g / max(share, 1e-6) * cells * u_strength);
+    p.background *= exp(-mean.r * cells * u_strength);
+}
+
+// Vectors with the dominant axis first, and back.
+vec3 turned(vec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.yzx : v.zxy; }
+ivec3 turned(ivec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.yzx : v.zxy; }
+ivec3 turned_back(ivec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.zxy : v.yzx; }
+
+// Light that comes through a cone from a cell along a unit vector, as far as `end` mm.
+float through(ivec3 cell, vec3 along, float tangent, float end) {
+    vec3 steep = abs(along / u_edge_mm);
+    int axis = steep.x >= max(steep.y, steep.z) ? 0 : steep.y >= steep.z ? 1 : 2;
+    vec3 edge = turned(u_edge_mm, axis), way = turned(along, axis), at = vec3(turned(cell, axis)) + 0.5;
+    ivec3 cells = turned(u_cells, axis);
+    int sign_of = way.x > 0.0 ? 1 : -1;
+    float length_mm = edge.x / abs(way.x);                          // of the way through one layer of cells
+    vec2 slope = way.yz / abs(way.x) * edge.x / edge.yz;            // cells across for one along
+    vec2 lean = sqrt(1.0 + way.yz * way.yz / (way.x * way.x));      // a section across the axis is longer than the cone is wide
+    float last = end / length_mm;                                   // in layers from the cell's centre
+    int begin = 1;                                                  // layers from the cell's own
+    float width = u_first;
+    Passing light = Passing(1.0, 0.0, 1.0);
+    for (int i = 0; i < MOST && light_of(light) > DARK; ++i) {
+        int count = max(int(width + 0.5), 1), next = begin + count;
+        float from = float(begin) - 0.5, to = float(next) - 0.5;
+        if (from >= last) break;
+        // The section's layers, from low to below high, as far as they lie in the volume.
+        int first_layer = int(at.x) + (sign_of > 0 ? begin : -(next - 1));
+        ivec2 along_axis = clamp(ivec2(first_layer, first_layer + count), ivec2(0), ivec2(cells.x));
+        if (along_axis.x >= along_axis.y) break;
+        float middle = 0.5 * (from + to);
+        vec2 center = at.yz + slope * middle, half_width = tangent * middle * length_mm / edge.yz * lean;
+        ivec2 low = ivec2(floor(center - half_width + 0.5)), high = ivec2(floor(center + half_width + 0.5));
+        ivec2 own = ivec2(floor(center));
+        low = min(low, own);
+        high = max(high, own + 1);
+        low = clamp(low, ivec2(0), cells.yz);
+        high = clamp(high, ivec2(0), cells.yz);
+        if (low.x >= high.x || low.y >= high.y) break;
+        ivec3 corner = ivec3(along_axis.x, low), far_corner = ivec3(along_axis.y, high), box = far_corner - corner;
+        vec4 mean = box_sum(turned_back(corner, axis), turned_back(far_corner, axis)) / float(box.x * box.y * box.z);
+        // The mean counts for the section's own length.
+        pass(light, mean, float(box.x) * length_mm / u_cell_mm * min(1.0, (last - from) / (to - from)), float(box.x));
+        begin = next;
+        width *= 1.0 + u_growth;
+    }
+    return light_of(light);
+}
+
+// Two unit vectors across a third (Duff et al. 2017).
+mat2x3 across(vec3 n) {
+    float s = n.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + n.z), b = n.x * n.y * a;
+    return mat2x3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y));
+}
+
+void main() {
+    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer);
+    o_light = 1.0;
+    if (texelFetch(u_near, cell, 0).r == 0.0) return;
+    vec3 p = (vec3(cell) + 0.5) * u_edge_mm, axis = u_lamp.xyz - u_lamp.w * p;
+    float away = u_lamp.w > 0.0 ? max(length(axis), 1e-6 * u_cell_mm) : 1e30;
+    if (u_lamp.w > 0.0) axis /= away;
+
+    // 1. What reaches the cell if nothing is in the way.
+    float arriving = u_reach > 0.0 ? 1.0 / (1.0 + away * away / (u_reach * u_reach)) : 1.0;
+    if (u_beam_edge.x < u_beam_edge.y) arriving *= smoothstep(u_beam_edge.x, u_beam_edge.y, dot(-axis, u_beam));
+
+    // 2. What is in the way, cone by cone.
+    float sum = 0.0, weights = 0.0;
+#if POINTS
+    for (int k = 0; k < CONES; ++k) {
+        vec3 along = u_place[k] - p;
+        float distance_mm = max(length(along), 1e-6 * u_cell_mm);
+        along /= distance_mm;
+        float weight = dot(u_shines, u_shines) > 0.0 ? max(dot(-along, u_shines), 0.0) : 1.0;
+        weights += 1.0;
+        if (weight <= 0.0) continue;
+        float tangent = u_tangent >= 0.0 ? u_tangent : u_part / distance_mm;
+        sum += weight * through(cell, along, tangent, distance_mm);
+    }
+#else
+    float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / away;
+    mat2x3 sides = across(axis);
+    for (int k = 0; k < CONES; ++k) {
+        vec3 along = normalize(axis + sides * (u_disc[k] * tangent));
+        sum += through(cell, along, tangent * u_part, away);
+        weights += 1.0;
+    }
+#endif
+    o_light = arriving * sum / weights;
+}

@@ -1,0 +1,110 @@
+"""The passes of `local-occlusion`: blocks, some more directions of light, ray casting."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Generator
+from dataclasses import replace
+
+from ...gpu import Device, Program
+from ..frame import Frame
+from ..marcher import (
+    LOCAL,
+    Marcher,
+    Material,
+    Variant,
+    bind_material,
+    is_empty,
+    light_uniforms,
+    lights_towards,
+    prepare_material,
+    set_view,
+    visible_box,
+)
+from .blocks import Blocks, prepare_blocks
+from .gather import Gatherer, LightMap
+
+#: Directions without which no picture is shown.
+LEAST = 4
+#: Seconds of gathering before a picture that is to come soon; or as long as the drawing of the last one took.
+SECONDS = 0.1
+#: How the lamps are combined with the light from all around (``local_light.glsl``).
+PRODUCT, MIX = 1, 2
+
+
+class LocalOcclusionPainter:
+    """Local ambient occlusion; gathers light while pictures are drawn."""
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self.marcher = Marcher(device)
+        self.gatherer = Gatherer(device)
+        self._drawing = SECONDS
+
+    def paint(self, frame: Frame) -> Generator[float, None, None]:
+        """Draw a frame, yielding progress after each bounded piece."""
+        material = prepare_material(frame)
+        box = visible_box(frame, material)
+        if is_empty(box):
+            self.marcher.clear(frame)
+            yield 1.0
+            return
+        blocks = prepare_blocks(frame, material)
+        yield 0.0
+        light = self.gatherer.light_map(frame, material, blocks)
+        least, seconds = (LEAST, max(SECONDS, self._drawing)) if frame.quality.progressive else (1 << 20, 0.0)
+        for done in self.gatherer.gather(frame, material, blocks, light, least, seconds):
+            yield 0.5 * done
+        frame.settled = light.complete
+        began = time.perf_counter()
+        yield from self._cast(frame, material, blocks, light, box)
+        self._drawing = time.perf_counter() - began
+
+    def _cast(
+        self,
+        frame: Frame,
+        material: Material,
+        blocks: Blocks,
+        light: LightMap,
+        box: tuple[int, int, int, int],
+    ) -> Generator[float, None, None]:
+        """Draw the picture with the light gathered so far."""
+        program = self._program(frame, material, blocks, light)
+        self.marcher.begin(frame)
+        for done in self.marcher.march(frame, program, (0, 1 << 24), box, True):
+            yield 0.5 + 0.5 * done
+        self.marcher.finish(frame)
+        yield 1.0
+
+    def _program(self, frame: Frame, material: Material, blocks: Blocks, light: LightMap) -> Program:
+        params = frame.params
+        lamps = len(frame.scene.active_lights) if params.lamps != "off" else 0
+        mode = PRODUCT if params.mode == "product" else MIX
+        variant = Variant(shading=LOCAL, lights=lamps, local=mode, joined=params.joined)
+        program = self.marcher.program(variant, shown_emission(frame, material))
+        bind_material(program, material, frame)
+        set_view(program, frame, None)
+        program.set(**light_uniforms(frame, lights_towards(frame)))
+        bind_light(program, frame, blocks, light)
+        return program
+
+    def release(self) -> None:
+        """Free the GPU objects."""
+        self.marcher.release()
+        self.gatherer.release()
+
+
+def shown_emission(frame: Frame, material: Material) -> Material:
+    """Return the material as the ray caster is to see it: what shines may do so on its surroundings alone."""
+    emits = material.tables.emits and frame.params.emission in ("both", "casting")
+    return replace(material, tables=replace(material.tables, emits=emits))
+
+
+def bind_light(program: Program, frame: Frame, blocks: Blocks, light: LightMap) -> None:
+    """Set what ``local_light.glsl`` needs."""
+    params = frame.params
+    blocks.bind(program, frame)
+    program.bind(u_map=light.texture)
+    program.set(
+        u_brightness=params.brightness, u_bias=params.bias, u_share=params.share, u_facing=params.facing,
+    )  # fmt: skip
