@@ -146,6 +146,9 @@ class ToolStrip(QFrame):
             "light": tool_button("Light", "Light: drag moves the lamps (L)", checkable=True),
             "clip": tool_button("Clip", "Clip: drag the faces of the crop box and the planes (C)", checkable=True),
         }
+        self.vtk = tool_button(
+            "VTK view", "VTK view beside the picture: pick lines, place seeds and regions (V)", checkable=True
+        )
         self.fit = tool_button("Fit", "See the whole subject (Home)")
         column = QVBoxLayout(self)
         column.setContentsMargins(5, 8, 5, 8)
@@ -155,8 +158,9 @@ class ToolStrip(QFrame):
             button.clicked.connect(lambda _=False, name=name: self.choose(name))
             column.addWidget(button)
         column.addStretch(1)
-        self.fit.setIconSize(QSize(22, 22))
-        column.addWidget(self.fit)
+        for button in (self.vtk, self.fit):
+            button.setIconSize(QSize(22, 22))
+            column.addWidget(button)
         self.choose("orbit")
         self.refresh_theme()
 
@@ -169,9 +173,9 @@ class ToolStrip(QFrame):
 
     def buttons(self) -> list[QWidget]:
         """Return the buttons from top to bottom."""
-        return [*self.tools.values(), self.fit]
+        return [*self.tools.values(), self.vtk, self.fit]
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
-        for name, button in (*self.tools.items(), ("fit", self.fit)):
+        for name, button in (*self.tools.items(), ("vtk", self.vtk), ("fit", self.fit)):
             button.setIcon(icon(name, current_theme()))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from qtpy.QtCore import QObject, Signal
 from qtpy.QtWidgets import QDialog, QFileDialog, QWidget
 
-from sfumato import Geometry, Scene, SfumatoError
+from sfumato import Geometry, Scene, SfumatoError, Tracing
 from sfumato.geometry import is_geometry
 
 from .autosave import Slot
@@ -52,6 +53,7 @@ class Files(QObject):
         )
         loader.loaded.connect(self._on_loaded)
         loader.geometry_loaded.connect(self._on_geometry)
+        loader.traced.connect(self._on_traced)
         loader.several.connect(self._ask_for_series)
         loader.raw_found.connect(self._ask_for_form)
         loader.reduced.connect(self._on_reduced)
@@ -101,6 +103,26 @@ class Files(QObject):
         self._bar.show_progress(f"Opening {self._wish.name}… ", 0.0)
         self._bar.repaint()
         self.loader.open_geometry(paths, self._editor.scene)
+
+    def trace(self, tracing: Tracing) -> None:
+        """Trace streamlines, instead of those that were traced before."""
+        self._wish = Wish(tracing.path)
+        self.loader.trace(tracing)
+
+    def _on_traced(self, made: Geometry) -> None:
+        """Show new streamlines as the ones that they replace were shown."""
+        self._bar.clear("progress")
+        self._bar.clear("error")
+        scene = self._editor.scene
+        old = next((g for g in scene.geometry if g.tracing and g.path == made.path), None)
+        if old is not None:
+            made = replace(old, shape=made.shape, tracing=made.tracing, name=made.name, notices=made.notices)
+        geometry = tuple(made if g is old else g for g in scene.geometry) + (() if old else (made,))
+        self._editor.change(
+            "Trace streamlines", True, technique=technique_drawing_geometry(scene), geometry=geometry
+        )
+        if made.notices:
+            self._bar.show_notice("\n".join(made.notices))
 
     def _on_geometry(self, geometry: tuple[Geometry, ...], notices: tuple[str, ...]) -> None:
         self._bar.clear("progress")

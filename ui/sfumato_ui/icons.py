@@ -26,6 +26,8 @@ _GLYPHS = {
     "shown": "ph.eye",
     "solo": "ph.number-circle-one",
     "close": "ph.x",
+    "vtk": "ph.columns",
+    "undock": "ph.arrow-square-out",
     "error": "ph.warning",
     "info": "ph.info",
     "reset": "ph.arrow-u-up-left",

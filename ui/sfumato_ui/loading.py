@@ -12,7 +12,7 @@ from typing import Any
 from qtpy.QtCore import QObject, Signal
 
 import sfumato_samples
-from sfumato import Geometry, Scene, Volume
+from sfumato import Geometry, Scene, Tracing, Volume
 from sfumato.export.png import carries_scene, open_png
 from sfumato.geometry import is_geometry
 from sfumato.scene.presets import presets_for, suggest_view
@@ -79,6 +79,8 @@ class Loader(QObject):
     reduced = Signal(object)
     #: Tracts and meshes are ready (tuple of them, tuple of notices).
     geometry_loaded = Signal(object, object)
+    #: Streamlines are ready.
+    traced = Signal(object)
     #: A folder holds several DICOM series (path, list of series).
     several = Signal(str, object)
     #: Bare voxels that nothing describes (path, list of guesses).
@@ -98,6 +100,10 @@ class Loader(QObject):
     def open_geometry(self, paths: list[str], scene: Scene) -> None:
         """Begin to open tracts and meshes that are to join a scene."""
         self._start(lambda progress, stop: self._open_geometry(paths, scene, progress, stop))
+
+    def trace(self, tracing: Tracing) -> None:
+        """Begin to trace streamlines."""
+        self._start(lambda progress, stop: self._trace(tracing, progress, stop))
 
     def reduce(self, scene: Scene) -> None:
         """Begin to halve the resolution of a scene's volume."""
@@ -161,6 +167,13 @@ class Loader(QObject):
             made.append(read_geometry(path, step, stop.is_set))
             notices += geometry_notices(made[-1], scene.volume)
         return partial(self.geometry_loaded.emit, tuple(made), tuple(notices))
+
+    def _trace(self, tracing: Tracing, progress: Any, stop: threading.Event) -> Callable[[], object]:
+        from sfumato.geometry import mesh_of, trace
+
+        made = trace(tracing, progress=progress, cancel=stop.is_set)
+        mesh_of(made)
+        return partial(self.traced.emit, made)
 
     def _reduce(self, scene: Scene, progress: Any, stop: threading.Event) -> Callable[[], object]:
         from sfumato.io import reduce_volume

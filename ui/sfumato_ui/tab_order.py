@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QAbstractSpinBox, QComboBox, QLayout, QScrollArea, QTabWidget, QWidget
+from qtpy.QtWidgets import QAbstractSpinBox, QComboBox, QLayout, QScrollArea, QSplitter, QTabWidget, QWidget
 
 
 def in_visual_order(root: QWidget) -> Iterator[QWidget]:
@@ -17,6 +17,9 @@ def in_visual_order(root: QWidget) -> Iterator[QWidget]:
         return
     if isinstance(root, QTabWidget):
         yield root.tabBar()
+        for i in range(root.count()):
+            yield from in_visual_order(root.widget(i))
+    elif isinstance(root, QSplitter):
         for i in range(root.count()):
             yield from in_visual_order(root.widget(i))
     elif isinstance(root, QScrollArea):

@@ -19,7 +19,7 @@ from qtpy.QtGui import (
     QResizeEvent,
     QShortcut,
 )
-from qtpy.QtWidgets import QApplication, QGridLayout, QMainWindow, QTabWidget, QWidget
+from qtpy.QtWidgets import QApplication, QGridLayout, QMainWindow, QSplitter, QTabWidget, QWidget
 
 from sfumato import Document, Scene
 from sfumato.scene import STANDARD_VIEWS
@@ -44,6 +44,7 @@ from .theme import apply_theme
 from .thumbnails import Thumbnails
 from .trouble import Trouble
 from .viewport import Viewport
+from .vtk_view.layout import VtkLayout
 from .worker import RenderWorker
 
 PANEL_WIDTH = 320
@@ -81,6 +82,8 @@ class MainWindow(QMainWindow):
         self.material_page = MaterialPage(self.editor)
         self.material_page.use_thumbnails(self.thumbnails)
         self.view_page = ViewPage(self.editor, self.viewport.clips)
+        self.views = QSplitter(Qt.Orientation.Horizontal)
+        self.vtk = VtkLayout(self.views, self.editor, self.messages)
         self.autosave = Autosave(self.editor, self.files.identify, self)
         self.recovery = Recovery(self.messages, self.files.recover)
         self.trouble = Trouble(self.editor, self.files, self.driver, self.worker, self.messages)
@@ -110,13 +113,15 @@ class MainWindow(QMainWindow):
             (self.view_page, "View"),
         ):
             self.panel.addTab(page, name)
+        self.views.addWidget(self.viewport)
+        self.views.setChildrenCollapsible(False)
         middle = QWidget()
         grid = QGridLayout(middle)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setSpacing(0)
         grid.addWidget(self.top, 0, 0, 1, 3)
         grid.addWidget(self.strip, 1, 0)
-        grid.addWidget(self.viewport, 1, 1)
+        grid.addWidget(self.views, 1, 1)
         grid.addWidget(self.panel, 1, 2)
         grid.addWidget(self.status, 2, 0, 1, 3)
         grid.setRowStretch(1, 1)
@@ -136,6 +141,10 @@ class MainWindow(QMainWindow):
         self.top.unlit.connect(self.driver.set_unlit)
         self.strip.chosen.connect(self._choose_tool)
         self.strip.fit.clicked.connect(lambda: self.look(""))
+        self.strip.vtk.toggled.connect(self.vtk.set_open)
+        self.vtk.changed.connect(self.strip.vtk.setChecked)
+        self.vtk.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
+        self.vtk.trace_wanted.connect(self.files.trace)
         self.view_page.view_chosen.connect(self.look)
         self.view_page.theme_chosen.connect(self.set_theme)
         self.view_page.frames_chosen.connect(self.driver.set_frames)
@@ -173,6 +182,7 @@ class MainWindow(QMainWindow):
             "Esc": lambda: self.strip.choose("orbit"),
             "L": lambda: self.strip.choose("light"),
             "C": lambda: self.strip.choose("clip"),
+            "V": self.strip.vtk.toggle,
         }.items():
             QShortcut(QKeySequence(keys), self).activated.connect(act)
         for i, view in enumerate(STANDARD_VIEWS):
@@ -213,6 +223,7 @@ class MainWindow(QMainWindow):
             self.top,
             self.strip,
             self.messages,
+            self.vtk,
             self.light_page,
             self.material_page,
             self.view_page,
@@ -293,6 +304,7 @@ class MainWindow(QMainWindow):
         self._closed = True
         settings().setValue("window/geometry", self.saveGeometry())
         self.hide()
+        self.vtk.close()
         self.driver.stop()
         self.recovery.close()
         self.autosave.close()

@@ -134,7 +134,10 @@ def _box_text(bounds: np.ndarray) -> str:
 
 def _tracer(field: VectorField, tracing: Tracing, task: Task) -> Any:
     tracer = need("vtkmodules.vtkFiltersFlowPaths", task).vtkStreamTracer()
-    tracer.SetInputData(field.dataset)
+    # A copy that shares the arrays: another thread may still trace in the same field.
+    dataset = field.dataset.NewInstance()
+    dataset.ShallowCopy(field.dataset)
+    tracer.SetInputData(dataset)
     tracer.SetInputArrayToProcess(0, 0, 0, 0, VECTORS)  # first input, port and connection 0, point data
     getattr(tracer, _INTEGRATORS[tracing.integrator])()
     getattr(tracer, f"SetIntegrationDirectionTo{_WAYS[tracing.direction]}")()

@@ -1,0 +1,90 @@
+"""Geometry for VTK's own pictures: lines as lines, so that a cell that is picked is a line of the geometry."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..io.reading import Task, need
+from ..scene.geometry import Geometry
+from ..scene.shapes import Lines
+from .color import point_colors
+from .meshing import mesh_of
+from .polyline import Strand, kept_lines, line_numbers
+from .tubes import tangents_of
+
+#: Name of the array of colours, 8-bit sRGB.
+COLORS = "colors"
+
+
+def poly_of(geometry: Geometry) -> tuple[Any, np.ndarray]:
+    """Return a vtkPolyData of what the filters leave, with `COLORS`, and what its cells are.
+
+    Returns
+    -------
+    poly : vtkPolyData
+        Lines, or triangles with normals; world mm LPS.
+    numbers : ndarray, shape (cells,)
+        The number of the line in ``geometry.shape`` that each cell is; of the triangle for a surface.
+    """
+    if isinstance(geometry.shape, Lines):
+        return _lines(geometry, geometry.shape)
+    mesh = mesh_of(geometry)
+    count = len(mesh.triangles)
+    poly = _poly(mesh.points, mesh.colors)
+    poly.SetPolys(_cells(np.arange(0, 3 * count + 1, 3), mesh.triangles.ravel()))
+    normals = _vtk(mesh.normals)
+    poly.GetPointData().SetNormals(normals)
+    return poly, np.arange(count)
+
+
+def line_poly(geometry: Geometry, number: int) -> Any:
+    """Return a vtkPolyData of one line of a geometry."""
+    shape = geometry.shape
+    assert isinstance(shape, Lines)
+    points = shape.points[shape.offsets[number] : shape.offsets[number + 1]]
+    poly = _poly(points, np.ones_like(points))
+    poly.SetLines(_cells(np.array([0, len(points)]), np.arange(len(points))))
+    return poly
+
+
+def _lines(geometry: Geometry, shape: Lines) -> tuple[Any, np.ndarray]:
+    kept = kept_lines(geometry)
+    line = line_numbers(shape)
+    seen = kept[line]
+    strand = Strand(shape.points[seen], line[seen], np.empty((int(seen.sum()), 0), np.float32))
+    values = geometry.scalar_values(geometry.scalar)[seen] if geometry.color_by == "scalar" else None
+    tangents = tangents_of(strand) if len(strand.points) else np.empty((0, 3), np.float32)
+    poly = _poly(strand.points, point_colors(geometry, tangents, values))
+    lengths = np.diff(shape.offsets)[kept]
+    poly.SetLines(_cells(np.concatenate([[0], np.cumsum(lengths)]), np.arange(len(strand.points))))
+    return poly, np.flatnonzero(kept)
+
+
+def _module(name: str) -> Any:
+    return need(name, Task(Path("geometry")))
+
+
+def _vtk(array: np.ndarray) -> Any:
+    support = _module("vtkmodules.util.numpy_support")
+    return support.numpy_to_vtk(np.ascontiguousarray(array), deep=True)
+
+
+def _poly(points: np.ndarray, colors: np.ndarray) -> Any:
+    places = _module("vtkmodules.vtkCommonCore").vtkPoints()
+    places.SetData(_vtk(points.astype(np.float32)))
+    poly = _module("vtkmodules.vtkCommonDataModel").vtkPolyData()
+    poly.SetPoints(places)
+    coded = np.where(colors > 0.0031308, 1.055 * np.maximum(colors, 0) ** (1 / 2.4) - 0.055, 12.92 * colors)
+    array = _vtk(np.rint(255 * np.clip(coded, 0, 1)).astype(np.uint8))
+    array.SetName(COLORS)
+    poly.GetPointData().SetScalars(array)
+    return poly
+
+
+def _cells(offsets: np.ndarray, connectivity: np.ndarray) -> Any:
+    cells = _module("vtkmodules.vtkCommonDataModel").vtkCellArray()
+    cells.SetData(_vtk(offsets.astype(np.int64)), _vtk(connectivity.astype(np.int64)))
+    return cells
