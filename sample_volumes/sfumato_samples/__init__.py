@@ -49,7 +49,9 @@ def load(name: str = DEFAULT) -> sfumato.Volume:
         modality=item.modality,
         orientation_known=item.orientation_known,
         name=item.title,
-        transfer=sfumato.TransferFunction.from_points(item.transfer, name=item.look) if item.transfer else None,
+        transfer=sfumato.TransferFunction.from_points(item.transfer, name=item.look)
+        if item.transfer
+        else None,
     )
     return sfumato.Volume(cached(item), spacing=item.spacing, info=info)
 

@@ -70,7 +70,9 @@ def test_place_and_direction_of_the_volume_count(ball: Volume) -> None:
     turn = ((0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
     moved = Volume(ball.data, (2.0, 1.0, 1.0), (5.0, 6.0, 7.0), turn)
     middle = np.asarray(moved.center)
-    camera = Camera(tuple(middle - np.array([0, 300, 0])), tuple(middle), parallel_projection=True, parallel_scale=80)
+    camera = Camera(
+        tuple(middle - np.array([0, 300, 0])), tuple(middle), parallel_projection=True, parallel_scale=80
+    )
     point = surface_under(Scene(volume=moved, transfer=OPAQUE, camera=camera), 0, 0, 1.0)
     # Array x, spaced by 2 mm, runs along world -y.
     assert point == pytest.approx(middle - [0, 40, 0], abs=1.2)

@@ -43,7 +43,7 @@ def both(window: MainWindow, qtbot: Any) -> Iterator[MainWindow]:
     window.editor.change("Add two", geometry=(two_lines(),))
     qtbot.mouseClick(window.strip.vtk, LEFT)
     wait_for_stage(window, qtbot)
-    yield window
+    return window
 
 
 def wait_for_stage(window: MainWindow, qtbot: Any) -> Any:

@@ -144,7 +144,9 @@ class ToolStrip(QFrame):
         self.tools = {
             "orbit": tool_button("Orbit", "Orbit: drag turns the subject (Esc)", checkable=True),
             "light": tool_button("Light", "Light: drag moves the lamps (L)", checkable=True),
-            "clip": tool_button("Clip", "Clip: drag the faces of the crop box and the planes (C)", checkable=True),
+            "clip": tool_button(
+                "Clip", "Clip: drag the faces of the crop box and the planes (C)", checkable=True
+            ),
         }
         self.vtk = tool_button(
             "VTK view", "VTK view beside the picture: pick lines, place seeds and regions (V)", checkable=True

@@ -122,9 +122,7 @@ def _compare_slices(
         return np.asarray(truth.brightness(picture)[truth.mask])
 
     skins = [shown(with_all, n) for n in slices]
-    shadows = [
-        skin / np.maximum(shown(bare, n), LEAST_SKIN) for skin, n in zip(skins, slices, strict=True)
-    ]
+    shadows = [skin / np.maximum(shown(bare, n), LEAST_SKIN) for skin, n in zip(skins, slices, strict=True)]
     result.slices = {n: _apart(s, shadows[-1]) for n, s in zip(slices, shadows, strict=True)}
     result.slices_spread, result.skin_spread = (
         max((_apart(a, b) for a, b in itertools.combinations(seen, 2)), default=0.0)

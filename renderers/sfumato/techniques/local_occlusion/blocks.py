@@ -88,7 +88,7 @@ def prepare_blocks(frame: Frame, material: Material) -> Blocks:
         packing = lay_out(frame, material, pyramid)
         return Blocks(frame.device, packing, packed_voxels(pyramid, packing))
 
-    return store.get(("blocks", *blocks_key(frame)), make, lambda b: b.size)  # type: ignore[misc]
+    return store.get(("blocks", *blocks_key(frame)), make, lambda b: b.size)
 
 
 def lay_out(frame: Frame, material: Material, pyramid: Pyramid) -> Packing:
