@@ -180,3 +180,36 @@ def test_undoing_everything_leads_back_and_redoing_forth(actions: list[str]) -> 
     while document.redo_label:
         document.redo()
     assert document.scene == last
+
+
+def test_steps_name_every_state_and_any_can_be_gone_to(document: Document) -> None:
+    for i, label in enumerate(("One", "Two", "Three")):
+        document.change(label, exposure=i + 1.0)
+    assert [(s.label, s.scene.exposure) for s in document.steps] == [
+        ("", 0),
+        ("One", 1),
+        ("Two", 2),
+        ("Three", 3),
+    ]
+    told: list[Scene] = []
+    document.subscribe(lambda old, new: told.append(new))
+    steps = document.steps
+    for index in (0, 3, 1, 2):
+        document.go_to(index)
+        assert document.position == index
+        assert document.scene is steps[index].scene
+        assert document.steps == steps
+        assert document.undo_label == steps[index].label
+    assert len(told) == 4
+    with pytest.raises(IndexError, match="no step 4"):
+        document.go_to(4)
+    document.change("Other", exposure=9.0)
+    assert [s.label for s in document.steps] == ["", "One", "Two", "Other"]
+
+
+def test_a_drag_is_no_step_before_its_end(document: Document) -> None:
+    document.begin_drag("Dragged")
+    document.change("Dragged", exposure=1.0)
+    assert [s.scene.exposure for s in document.steps] == [0.0]
+    document.end_drag()
+    assert [s.label for s in document.steps] == ["", "Dragged"]

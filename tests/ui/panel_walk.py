@@ -281,6 +281,12 @@ def main(font_factor: float, folder: Path) -> None:
     window.resize(1280, 720)
     window.show()
     window.activateWindow()
+    pause(0.05)
+    picture = window.viewport.width() * window.viewport.height() / (window.width() * window.height())
+    for exposure in (0.1, 0.2, 0.3):
+        window.editor.change("Change the exposure", exposure=exposure)
+    window.editor.undo()
+    window.drawer.open("history")
     pages = window.light_page, window.material_page, window.view_page
     for section in (window.light_page.own, *(page.more for page in pages)):
         section.set_open(True)
@@ -297,7 +303,6 @@ def main(font_factor: float, folder: Path) -> None:
         wrong += walk_window(window, theme)
         for dialog in dialogs(window, folder):
             wrong += walk_dialog(dialog, theme)
-    picture = window.viewport.width() * window.viewport.height() / (window.width() * window.height())
     window.editor.document.mark_saved()
     window.close()
     print(json.dumps({"wrong": wrong, "ratio": window.devicePixelRatioF(), "picture": picture}))

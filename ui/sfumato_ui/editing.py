@@ -73,6 +73,11 @@ class Editor(QObject):
         self.document.redo()
         self.history_changed.emit()
 
+    def go_to(self, index: int) -> None:
+        """Return to a step of the history by its index."""
+        self.document.go_to(index)
+        self.history_changed.emit()
+
     def reset(self, scene: Scene) -> None:
         """Start anew with another scene."""
         self._selected = 0

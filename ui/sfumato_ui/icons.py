@@ -27,6 +27,8 @@ _GLYPHS = {
     "solo": "ph.number-circle-one",
     "close": "ph.x",
     "vtk": "ph.columns",
+    "history": "ph.clock-counter-clockwise",
+    "compare": "ph.square-split-horizontal",
     "undock": "ph.arrow-square-out",
     "error": "ph.warning",
     "info": "ph.info",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QSizePolicy
+from qtpy.QtCore import QSize, Qt
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QSizePolicy, QToolButton
 
 from sfumato import Volume
 
@@ -30,13 +30,20 @@ class StatusLine(QFrame):
         keep.setRetainSizeWhenHidden(True)
         self.bar.setSizePolicy(keep)
         self._row = row = QHBoxLayout(self)
-        row.setContentsMargins(14, 3, 14, 3)
+        row.setContentsMargins(8, 1, 14, 1)
         row.setSpacing(18)
         row.addWidget(self.data)
         row.addWidget(self.state)
         row.addWidget(self.bar)
         row.addWidget(self.renderer, 1)
         self.bar.hide()
+        self._buttons = 0
+
+    def add_button(self, button: QToolButton) -> None:
+        """Put a button at the line's beginning, behind those that are there."""
+        button.setIconSize(QSize(16, 16))
+        self._row.insertWidget(self._buttons, button)
+        self._buttons += 1
 
     def show_volume(self, volume: Volume | None) -> None:
         """Say what is open."""

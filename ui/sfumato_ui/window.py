@@ -27,10 +27,12 @@ from sfumato.scene import STANDARD_VIEWS
 from . import camera_moves
 from .autosave import Autosave
 from .bars import ToolStrip, TopBar
+from .drawer import Drawer
 from .driver import ViewDriver
 from .editing import Editor
 from .exporting import Exporter
 from .files import Files
+from .history import HistoryRow
 from .loading import Loader
 from .messages import MessageBar
 from .panels.light import LightPage
@@ -78,6 +80,8 @@ class MainWindow(QMainWindow):
             self, self.editor, self.viewport, self.worker, self.messages, lambda: self.files.name
         )
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
+        self.drawer = Drawer()
+        self.history = HistoryRow(self.editor, self.thumbnails)
         self.light_page = LightPage(self.editor, self.thumbnails)
         self.material_page = MaterialPage(self.editor)
         self.material_page.use_thumbnails(self.thumbnails)
@@ -122,8 +126,12 @@ class MainWindow(QMainWindow):
         grid.addWidget(self.top, 0, 0, 1, 3)
         grid.addWidget(self.strip, 1, 0)
         grid.addWidget(self.views, 1, 1)
-        grid.addWidget(self.panel, 1, 2)
-        grid.addWidget(self.status, 2, 0, 1, 3)
+        grid.addWidget(self.panel, 1, 2, 2, 1)
+        self.status.add_button(
+            self.drawer.add("history", "History", "Every step, to return to (H)", self.history)
+        )
+        grid.addWidget(self.drawer, 2, 0, 1, 2)
+        grid.addWidget(self.status, 3, 0, 1, 3)
         grid.setRowStretch(1, 1)
         grid.setColumnStretch(1, 1)
         self.setCentralWidget(middle)
@@ -157,6 +165,7 @@ class MainWindow(QMainWindow):
         editor.history_changed.connect(self._show_title)
         editor.rejected.connect(self.messages.show_error)
         worker.picture.connect(self.status.show_picture)
+        worker.picture.connect(self.history.see)
         worker.progress.connect(self.status.show_progress)
         worker.ready.connect(self.status.show_renderer)
         self.files.opened.connect(self._show_document)
@@ -183,6 +192,7 @@ class MainWindow(QMainWindow):
             "L": lambda: self.strip.choose("light"),
             "C": lambda: self.strip.choose("clip"),
             "V": self.strip.vtk.toggle,
+            "H": lambda: self.drawer.toggle("history"),
         }.items():
             QShortcut(QKeySequence(keys), self).activated.connect(act)
         for i, view in enumerate(STANDARD_VIEWS):
@@ -222,6 +232,7 @@ class MainWindow(QMainWindow):
         for part in (
             self.top,
             self.strip,
+            self.drawer,
             self.messages,
             self.vtk,
             self.light_page,

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 from .scene import Scene
 
@@ -17,6 +18,22 @@ Listener = Callable[[Scene, Scene], None]
 #: Seconds within which edits with the same label are one undo step.
 MERGE_SECONDS = 1.0
 MAX_STEPS = 500
+
+
+@dataclass(frozen=True)
+class Step:
+    """A state of the history.
+
+    Attributes
+    ----------
+    label : str
+        What led to it, in words; empty for the state with which the history begins.
+    scene : Scene
+        The state itself.
+    """
+
+    label: str
+    scene: Scene
 
 
 class Document:
@@ -130,6 +147,40 @@ class Document:
     def redo_label(self) -> str:
         """What `redo` would do again, or nothing."""
         return self._redo[-1][1] if self._redo else ""
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """Every state that can be returned to, the oldest first; what a drag does is none before its end."""
+        labels = ["", *(label for _, label in self._undo), *(label for _, label in reversed(self._redo))]
+        now = self._open_drag[0] if self._open_drag is not None else self._scene
+        scenes = [*(scene for scene, _ in self._undo), now, *(scene for scene, _ in reversed(self._redo))]
+        return tuple(map(Step, labels, scenes))
+
+    @property
+    def position(self) -> int:
+        """Index of the present state in `steps`."""
+        return len(self._undo)
+
+    def go_to(self, index: int) -> None:
+        """Return to a state of `steps`, as by so many undos or redos, but told to listeners once.
+
+        Raises
+        ------
+        IndexError
+            If there is no such state.
+        """
+        self.end_drag()
+        if not 0 <= index <= len(self._undo) + len(self._redo):
+            raise IndexError(f"no step {index} in a history of {len(self._undo) + len(self._redo) + 1}")
+        scene = self._scene
+        while index != self.position:
+            source, target = (self._undo, self._redo) if index < self.position else (self._redo, self._undo)
+            before, label = source.pop()
+            target.append((scene, label))
+            scene = before
+        if scene is not self._scene:
+            self._last_edit = float("-inf")
+            self._become(scene)
 
     def undo(self) -> None:
         """Go back one step, if there is one."""
