@@ -69,15 +69,37 @@ def kept_lines(geometry: Geometry) -> np.ndarray:
 
 
 def _passes(lines: Lines, roi: Roi) -> np.ndarray:
-    away = lines.points - np.asarray(roi.center, np.float32)
-    if roi.kind == "sphere":
-        inside = (away**2).sum(axis=1) <= roi.size[0] ** 2
-    else:
-        inside = (np.abs(away) <= np.asarray(roi.size, np.float32)).all(axis=1)
+    """Tell which lines a region lets through; between its points a line is straight, and passes there too."""
     if roi.keep == "ends":
+        inside = _touches(lines.points, lines.points, roi)
         return np.asarray(inside[lines.offsets[:-1]] | inside[lines.offsets[1:] - 1])
-    touched = np.logical_or.reduceat(inside, lines.offsets[:-1])
+    # Each point with the next one; a line's last point with itself.
+    after = np.minimum(np.arange(1, len(lines.points) + 1), len(lines.points) - 1)
+    after[lines.offsets[1:] - 1] = lines.offsets[1:] - 1
+    touched = np.logical_or.reduceat(_touches(lines.points, lines.points[after], roi), lines.offsets[:-1])
     return touched if roi.keep == "inside" else ~touched
+
+
+def _touches(start: np.ndarray, end: np.ndarray, roi: Roi) -> np.ndarray:
+    """Tell which straight pieces, from start to end (n, 3), come into a region."""
+    center, size = (np.asarray(v, np.float32) for v in (roi.center, roi.size))
+    along, away = end - start, start - center
+    if roi.kind == "sphere":
+        length2 = np.maximum(np.einsum("ij,ij->i", along, along), np.float32(1e-30))
+        nearest = np.clip(-np.einsum("ij,ij->i", along, away) / length2, 0, 1)
+        away = away + nearest[:, None] * along
+        return np.asarray(np.einsum("ij,ij->i", away, away) <= size[0] ** 2)
+    # Slabs: the piece is in the box from the last entry into one to the first exit of one.
+    first, last = np.zeros(len(start), np.float32), np.ones(len(start), np.float32)
+    for axis in range(3):
+        step = along[:, axis]
+        flat = step == 0
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            ends = np.sort(np.stack([(s * size[axis] - away[:, axis]) / step for s in (-1, 1)]), axis=0)
+        out = flat & (np.abs(away[:, axis]) > size[axis])
+        first = np.maximum(first, np.where(flat, np.where(out, np.inf, -np.inf), ends[0]))
+        last = np.minimum(last, np.where(flat, np.inf, ends[1]))
+    return np.asarray(first <= last)
 
 
 # -- how they run ----------------------------------------------------------------------------------

@@ -42,7 +42,7 @@ class Roi:
     kind : str
         ``sphere`` (``center``, ``size[0]`` as its radius) or ``box`` (``center``, half edges ``size``).
     keep : str
-        ``inside``: lines with a point inside stay; ``outside``: those go; ``ends``: lines that begin or end
+        ``inside``: lines that pass through stay; ``outside``: those go; ``ends``: lines that begin or end
         inside stay.
     """
 

@@ -125,6 +125,12 @@ def test_radius_by_scalar() -> None:
         ({"rois": (Roi(center=(0, 0, 0), size=(1, 1, 1)),)}, 2),
         ({"rois": (Roi(center=(10, 0, 0), size=(1, 1, 1), keep="ends"),)}, 1),
         ({"rois": (Roi(kind="box", center=(10, 0, 0), size=(2, 2, 2), keep="outside"),)}, 1),
+        # Between two points a line passes through a region as well.
+        ({"rois": (Roi(center=(15, 0.5, 0), size=(1, 1, 1)),)}, 1),
+        ({"rois": (Roi(center=(15, 1.5, 0), size=(1, 1, 1)),)}, 0),
+        ({"rois": (Roi(kind="box", center=(15, 0.5, 0), size=(1, 1, 1)),)}, 1),
+        ({"rois": (Roi(kind="box", center=(5, 1.5, 0), size=(1, 1, 1)),)}, 0),
+        ({"rois": (Roi(kind="box", center=(5, 1.5, 0), size=(1, 1, 1), keep="outside"),)}, 3),
         ({"min_length": 1000}, 0),
     ],
 )

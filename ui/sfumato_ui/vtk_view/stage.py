@@ -72,6 +72,7 @@ class VtkStage(QObject):
         self._editor = editor
         self._following = False
         self._pressed: QPointF | None = None
+        #: By place in the scene: geometry, its actor (None if nothing of it is left), what its cells are.
         self._actors: dict[int, tuple[Geometry, Any, np.ndarray]] = {}
         self._box: Any = None
         self._mark: Any = None
@@ -118,7 +119,7 @@ class VtkStage(QObject):
     def show_scene(self, scene: Scene) -> None:
         """Show the scene's geometry, the box of its volume and what its camera sees."""
         for index in [i for i in self._actors if i >= len(scene.geometry)]:
-            self.view.remove_actor(self._actors.pop(index)[1], render=False)
+            self._remove(self._actors.pop(index)[1])
         for index, geometry in enumerate(scene.geometry):
             self._show_geometry(index, geometry)
         self._show_box(scene)
@@ -128,19 +129,30 @@ class VtkStage(QObject):
     def _show_geometry(self, index: int, geometry: Geometry) -> None:
         known = self._actors.get(index)
         if known is not None and known[0].mesh_key == geometry.mesh_key:
-            known[1].SetVisibility(geometry.visible)
+            if known[1] is not None:
+                known[1].SetVisibility(geometry.visible)
             return
         if known is not None:
-            self.view.remove_actor(known[1], render=False)
+            self._remove(known[1])
+        poly, numbers = poly_of(geometry)
+        self._actors[index] = (geometry, self._actor(geometry, poly), numbers)
+
+    def _actor(self, geometry: Geometry, poly: Any) -> Any:
+        """Return what shows poly data; nothing where the filters leave nothing."""
+        if not poly.GetNumberOfPoints():
+            return None
         import pyvista
 
-        poly, numbers = poly_of(geometry)
         actor = self.view.add_mesh(
             pyvista.wrap(poly), rgb=True, line_width=1.5, lighting=not isinstance(geometry.shape, Lines),
             reset_camera=False, render=False, show_scalar_bar=False, pickable=True,
         )  # fmt: skip
         actor.SetVisibility(geometry.visible)
-        self._actors[index] = (geometry, actor, numbers)
+        return actor
+
+    def _remove(self, actor: Any) -> None:
+        if actor is not None:
+            self.view.remove_actor(actor, render=False)
 
     def _show_box(self, scene: Scene) -> None:
         if self._box is not None:
