@@ -157,8 +157,8 @@ class Accumulation:
         Pixels drawn: the size asked for times the quality's scale.
     frames : int
         Frames so far. Those before the light has settled (``Quality.progressive``) take each other's place.
-    settled : bool
-        Whether the light of the frames so far is as good as it gets.
+    light : float
+        How much (0 to 1) of the light that comes by and by the frames so far have.
     """
 
     def __init__(
@@ -176,9 +176,14 @@ class Accumulation:
         self.quality = quality
         self._corner, self._whole = corner, whole
         self.frames = 0
-        self.settled = True
+        self.light = 1.0
         self._total: Target | None = None
         self._latest: Target | None = None
+
+    @property
+    def settled(self) -> bool:
+        """Whether the light of the frames so far is as good as it gets."""
+        return self.light >= 1
 
     def add_frame(self) -> Generator[float, None, None]:
         """Draw one more frame in bounded pieces, yielding progress (0 to 1); stop iterating to cancel it.
@@ -212,7 +217,7 @@ class Accumulation:
             self._total.clear()
         self.renderer.add(self._latest, self._total)
         device.wait()
-        self.frames, self.settled = number + 1, frame.settled
+        self.frames, self.light = number + 1, frame.light
 
     def picture(self) -> np.ndarray:
         """Return the picture so far: uint8 sRGB, straight alpha, shape (height, width, 4), row 0 on top."""

@@ -30,11 +30,13 @@ class Picture:
     interactive: bool
     #: Frames that it will have in the end.
     wanted: int = STILL_FRAMES
+    #: How much of the light that comes by and by it shows, 0 to 1.
+    light: float = 1.0
 
     @property
     def settled(self) -> bool:
         """Whether no better picture of this scene will follow."""
-        return not self.interactive and self.frames >= self.wanted
+        return not self.interactive and self.light >= 1 and self.frames >= self.wanted
 
 
 @dataclass(frozen=True)

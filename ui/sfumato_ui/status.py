@@ -59,6 +59,8 @@ class StatusLine(QFrame):
         """Say how the newest picture came about."""
         width, height = picture.image.width(), picture.image.height()
         kind = "moving" if picture.interactive else f"frame {picture.frames} of {picture.wanted}"
+        if picture.light < 1:
+            kind = f"light {100 * picture.light:.0f} %"
         self.state.setText(f"{_duration(picture.seconds)}   {width} × {height}   {kind}")
         self._row.activate()  # at once: the next paint would cut the longer text off
         if picture.settled:

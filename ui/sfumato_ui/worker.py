@@ -33,14 +33,16 @@ from .wording import one_line, remedy_of
 
 #: Qualities while the user drags, finest first; the worker keeps to the finest that is quick enough.
 DRAG_LADDER = (
-    Quality(scale=0.5, step=2.0, light=2.0),
-    Quality(scale=0.35, step=3.0, light=3.0),
-    Quality(scale=0.25, step=4.0, light=4.0),
+    Quality(scale=0.5, step=2.0, light=2.0, progressive=True),
+    Quality(scale=0.35, step=3.0, light=3.0, progressive=True),
+    Quality(scale=0.25, step=4.0, light=4.0, progressive=True),
 )
+#: Still pictures: light that takes long comes by and by, and is seen to.
+STILL = replace(FULL, progressive=True)
 #: A drag frame slower than this, in seconds, makes the next one coarser; one quicker than a fifth, finer.
 DRAG_SECONDS = 0.25
 #: Quality and jittered frames of thumbnails.
-THUMBNAIL = Quality(step=3.0, light=3.0)
+THUMBNAIL = Quality(step=3.0, light=3.0, progressive=True)
 THUMBNAIL_FRAMES = 2
 #: A drag's frame that takes longer than this, in seconds, shows its progress.
 SLOW_SECONDS = 0.5
@@ -201,7 +203,7 @@ class RenderWorker(QObject):
         return self._renderer
 
     def _draw(self, renderer: Any, request: ViewRequest) -> None:
-        quality = DRAG_LADDER[self._rung] if request.interactive else FULL
+        quality = DRAG_LADDER[self._rung] if request.interactive else STILL
         quality = replace(quality, scale=quality.scale * self._scale)
         with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
             most = count = 1 if request.interactive else request.frames
@@ -214,6 +216,11 @@ class RenderWorker(QObject):
                     if not request.interactive or time.perf_counter() - started > SLOW_SECONDS:
                         self.progress.emit((index + done) / count)
                 seconds = time.perf_counter() - started
+                if not (accumulation.settled or request.interactive):
+                    # Not yet one of the frames that count, but better than the last.
+                    self.picture.emit(_picture(accumulation, request, seconds, count))
+                    began = time.perf_counter()
+                    continue
                 index += 1
                 count = affordable_frames(most, index, time.perf_counter() - began)
                 self.picture.emit(_picture(accumulation, request, seconds, count))
@@ -343,4 +350,5 @@ def _picture(accumulation: Any, request: ViewRequest, seconds: float, wanted: in
         accumulation.frames,
         request.interactive,
         wanted,
+        accumulation.light,
     )

@@ -46,7 +46,8 @@ class Frame:
     ``jitter`` is the offset of the slices or samples in units of the sampling distance, in [0, 1);
     ``pixel_jitter`` the offset of the rays in pixels, each in [-0.5, 0.5]. A frame may be a part of a ``whole``
     larger picture: then ``corner`` is its lower left pixel, counted from the whole's lower left. A painter tells
-    by ``settled`` whether its light is as good as it gets; if not, the next frame takes this one's place.
+    by ``light`` how much (0 to 1) of the light that comes by and by is there; before it is ``settled``, the next
+    frame takes this one's place.
     """
 
     device: Device
@@ -57,7 +58,12 @@ class Frame:
     index: int = 0
     corner: tuple[int, int] = (0, 0)
     whole: tuple[int, int] | None = None
-    settled: bool = True
+    light: float = 1.0
+
+    @property
+    def settled(self) -> bool:
+        """Whether the light is as good as it gets."""
+        return self.light >= 1
 
     @property
     def whole_size(self) -> tuple[int, int]:

@@ -165,7 +165,8 @@ def texel_of(frame: Frame, aperture: float) -> float:
     """Return the edge of a lamp's texels in mm: fine shadows of wide cones are close by, where it is not asked."""
     share = (aperture - SHARP_APERTURE) / (SOFT_APERTURE - SHARP_APERTURE)
     widened = 1 + (SOFT_TEXELS - 1) * min(1.0, max(0.0, share))
-    return float(frame.volume.min_spacing / frame.params.resolution * widened * frame.quality.light)
+    resolution = getattr(frame.params, "resolution", 1.0)  # techniques that borrow these shadows have none
+    return float(frame.volume.min_spacing / resolution * widened * frame.quality.light)
 
 
 def grid_for(frame: Frame, material: Material, angles: tuple[float, float], aperture: float) -> LightGrid:

@@ -57,6 +57,11 @@ class LightMap:
         return self.done >= len(self.units)
 
     @property
+    def share(self) -> float:
+        """How much of all that is to be gathered is there, 0 to 1."""
+        return (self.done + self.slab / self.slabs) / len(self.units)
+
+    @property
     def slabs(self) -> int:
         """Slabs of a pass."""
         return int(self.texture.size[2]) // EDGE
@@ -108,11 +113,11 @@ class Gatherer:
         """
         program = self._prepare(frame, material, blocks, light)
         target = LayerTarget(self.device, layers=1, size=light.texture.size[:2])
-        began, total = time.perf_counter(), len(light.units)
+        began = time.perf_counter()
         try:
             while not light.complete and (light.done < least or time.perf_counter() - began < seconds):
                 self._add_slab(frame, program, target, light)
-                yield (light.done + light.slab / light.slabs) / total
+                yield light.share
         finally:
             target.release()
 

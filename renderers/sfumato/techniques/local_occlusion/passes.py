@@ -8,8 +8,10 @@ from dataclasses import replace
 
 from ...gpu import Device, Program
 from ..frame import Frame
+from ..lamp_shadows import Lamps, LampShadows
 from ..marcher import (
     LOCAL,
+    VOLUMES,
     Marcher,
     Material,
     Variant,
@@ -39,6 +41,7 @@ class LocalOcclusionPainter:
         self.device = device
         self.marcher = Marcher(device)
         self.gatherer = Gatherer(device)
+        self.shadows = LampShadows(device)
         self._drawing = SECONDS
 
     def paint(self, frame: Frame) -> Generator[float, None, None]:
@@ -54,44 +57,48 @@ class LocalOcclusionPainter:
         light = self.gatherer.light_map(frame, material, blocks)
         least, seconds = (LEAST, max(SECONDS, self._drawing)) if frame.quality.progressive else (1 << 20, 0.0)
         for done in self.gatherer.gather(frame, material, blocks, light, least, seconds):
-            yield 0.5 * done
-        frame.settled = light.complete
+            yield 0.4 * done
+        frame.light = light.share
         began = time.perf_counter()
-        yield from self._cast(frame, material, blocks, light, box)
-        self._drawing = time.perf_counter() - began
-
-    def _cast(
-        self,
-        frame: Frame,
-        material: Material,
-        blocks: Blocks,
-        light: LightMap,
-        box: tuple[int, int, int, int],
-    ) -> Generator[float, None, None]:
-        """Draw the picture with the light gathered so far."""
-        program = self._program(frame, material, blocks, light)
+        program = yield from self._program(frame, material, blocks, light)
         self.marcher.begin(frame)
         for done in self.marcher.march(frame, program, (0, 1 << 24), box, True):
             yield 0.5 + 0.5 * done
         self.marcher.finish(frame)
+        self._drawing = time.perf_counter() - began
         yield 1.0
 
-    def _program(self, frame: Frame, material: Material, blocks: Blocks, light: LightMap) -> Program:
-        params = frame.params
-        lamps = len(frame.scene.active_lights) if params.lamps != "off" else 0
+    def _program(
+        self, frame: Frame, material: Material, blocks: Blocks, light: LightMap
+    ) -> Generator[float, None, Program]:
+        """Set up the ray caster; sweeps lamps that cast shadows, if they have to be."""
+        params, active = frame.params, len(frame.scene.active_lights)
         mode = PRODUCT if params.mode == "product" else MIX
-        variant = Variant(shading=LOCAL, lights=lamps, local=mode, joined=params.joined)
+        variant, lamps = Variant(shading=LOCAL, local=mode, joined=params.joined), None
+        if params.lamps == "diffuse":
+            variant = replace(variant, lights=active)
+        elif params.lamps == "shadows" and active:
+            lamps = yield from self.shadows.prepare(frame, material, 0.5)
+            variant = replace(variant, slices=True, shading=VOLUMES, lights=active, near=lamps.ways.samples)
         program = self.marcher.program(variant, shown_emission(frame, material))
         bind_material(program, material, frame)
-        set_view(program, frame, None)
-        program.set(**light_uniforms(frame, lights_towards(frame)))
+        self._bind_lamps(program, frame, lamps)
         bind_light(program, frame, blocks, light)
         return program
+
+    def _bind_lamps(self, program: Program, frame: Frame, lamps: Lamps | None) -> None:
+        """Set the lamps and the view."""
+        program.set(u_ambient=0.0, **light_uniforms(frame, lights_towards(frame)))
+        if lamps is None:
+            set_view(program, frame, None)
+        else:
+            self.shadows.bind(program, frame, lamps)
 
     def release(self) -> None:
         """Free the GPU objects."""
         self.marcher.release()
         self.gatherer.release()
+        self.shadows.release()
 
 
 def shown_emission(frame: Frame, material: Material) -> Material:
