@@ -36,6 +36,8 @@ from sfumato.io import RawGuess, SeriesInfo
 from sfumato.scene import ClipPlane
 from sfumato_ui.app import make_application
 from sfumato_ui.export_dialog import ExportDialog
+from sfumato_ui.keyboard_dialog import KeyboardDialog
+from sfumato_ui.palette import CommandPalette
 from sfumato_ui.preset_gallery import PresetGallery
 from sfumato_ui.raw_dialog import RawDialog
 from sfumato_ui.rigs_row import RigButton
@@ -255,6 +257,8 @@ def dialogs(window: MainWindow, folder: Path) -> Iterator[QDialog]:
     ]
     yield ExportDialog((900, 660), False, lambda size, frames: 12.0, window)
     yield ExportDialog((900, 660), True, lambda size, frames: 12.0, window)
+    yield CommandPalette(window.commands.possible(), window)
+    yield KeyboardDialog(list(window.commands.actions), window)
     yield RawDialog(str(raw), [RawGuess((24, 24, 24), "uint8", (1.0, 1.0, 1.0), 0)], window)
     yield SeriesDialog(str(folder), series, window)
 

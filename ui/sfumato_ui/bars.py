@@ -16,6 +16,7 @@ from qtpy.QtWidgets import (
 
 import sfumato_samples
 
+from .bindings import explain
 from .editing import Editor
 from .icons import icon
 from .recent import RecentMenu
@@ -51,18 +52,19 @@ class TopBar(QFrame):
         super().__init__()
         self.setObjectName("TopBar")
         self._editor = editor
-        self.open = tool_button("Open", "Open a volume, a folder or a scene (Ctrl+O)", text="Open")
+        self.open = tool_button("Open", "", text="Open")
+        explain(self.open, "Open a volume, a folder or a scene", "open")
         self.open.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.open.setMenu(self._open_menu())
-        self.save = tool_button(
-            "Save scene", "Save the scene (Ctrl+S; under another name Ctrl+Shift+S)", text="Save"
-        )
+        self.save = tool_button("Save scene", "", text="Save")
+        explain(self.save, "Save the scene", "save")
         self.undo = tool_button("Undo", "")
         self.redo = tool_button("Redo", "")
         self.before = tool_button(
             "Before/After", "Hold to see the picture without light (hold B)", text="Before/After"
         )
-        self.picture = tool_button("Export", "Export the picture for screen or print (Ctrl+E)", text="Export")
+        self.picture = tool_button("Export", "", text="Export")
+        explain(self.picture, "Export the picture for screen or print", "export")
         row = QHBoxLayout(self)
         row.setContentsMargins(8, 4, 8, 4)
         row.setSpacing(2)
@@ -86,8 +88,8 @@ class TopBar(QFrame):
     def _open_menu(self) -> QMenu:
         menu = QMenu(self)
         menu.setToolTipsVisible(True)
-        menu.addAction("File…\tCtrl+O", self.file_wanted.emit)
-        menu.addAction("Folder…\tCtrl+Shift+O", self.folder_wanted.emit)
+        explain(menu.addAction("File…", self.file_wanted.emit), "File…", "open")
+        explain(menu.addAction("Folder…", self.folder_wanted.emit), "Folder…", "open-folder")
         self.recent = RecentMenu(menu)
         menu.addMenu(self.recent)
         menu.addSeparator()
@@ -103,12 +105,12 @@ class TopBar(QFrame):
     def refresh(self) -> None:
         """Say what can be undone."""
         document = self._editor.document
-        for button, word, label, keys in (
-            (self.undo, "Undo", document.undo_label, "Ctrl+Z"),
-            (self.redo, "Redo", document.redo_label, "Ctrl+Shift+Z"),
+        for button, word, label in (
+            (self.undo, "Undo", document.undo_label),
+            (self.redo, "Redo", document.redo_label),
         ):
             button.setEnabled(bool(label))
-            button.setToolTip(f"{word}: {label} ({keys})" if label else f"Nothing to {word.lower()}")
+            explain(button, f"{word}: {label}" if label else f"Nothing to {word.lower()}", word.lower())
         opened = is_open(self._editor.scene)
         for button in (self.save, self.before, self.picture):
             button.setEnabled(opened)
@@ -133,6 +135,12 @@ def _menu_heading(text: str, menu: QMenu) -> QWidgetAction:
     return action
 
 
+def _explained(name: str, text: str, command: str, checkable: bool = True) -> QToolButton:
+    button = tool_button(name, "", checkable=checkable)
+    explain(button, text, command)
+    return button
+
+
 class ToolStrip(QFrame):
     """Exactly one tool is active."""
 
@@ -142,16 +150,14 @@ class ToolStrip(QFrame):
         super().__init__()
         self.setObjectName("Strip")
         self.tools = {
-            "orbit": tool_button("Orbit", "Orbit: drag turns the subject (Esc)", checkable=True),
-            "light": tool_button("Light", "Light: drag moves the lamps (L)", checkable=True),
-            "clip": tool_button(
-                "Clip", "Clip: drag the faces of the crop box and the planes (C)", checkable=True
-            ),
+            "orbit": _explained("Orbit", "Orbit: drag turns the subject", "tool-orbit"),
+            "light": _explained("Light", "Light: drag moves the lamps", "tool-light"),
+            "clip": _explained("Clip", "Clip: drag the faces of the crop box and the planes", "tool-clip"),
         }
-        self.vtk = tool_button(
-            "VTK view", "VTK view beside the picture: pick lines, place seeds and regions (V)", checkable=True
+        self.vtk = _explained(
+            "VTK view", "VTK view beside the picture: pick lines, place seeds and regions", "vtk"
         )
-        self.fit = tool_button("Fit", "See the whole subject (Home)")
+        self.fit = _explained("Fit", "See the whole subject", "fit", checkable=False)
         column = QVBoxLayout(self)
         column.setContentsMargins(5, 8, 5, 8)
         column.setSpacing(4)

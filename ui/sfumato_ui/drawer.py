@@ -6,6 +6,7 @@ from qtpy.QtCore import Signal
 from qtpy.QtWidgets import QFrame, QToolButton, QVBoxLayout, QWidget
 
 from .bars import tool_button
+from .bindings import explain
 from .icons import icon
 from .theme import current_theme
 
@@ -26,8 +27,9 @@ class Drawer(QFrame):
         self.hide()
 
     def add(self, name: str, title: str, tip: str, page: QWidget) -> QToolButton:
-        """Add a page; returns the button that opens it, whose icon has the page's name."""
-        toggle = tool_button(title, tip, text=title, checkable=True)
+        """Add a page; returns the button that opens it, whose icon and command have the page's name."""
+        toggle = tool_button(title, "", text=title, checkable=True)
+        explain(toggle, tip, name)
         toggle.clicked.connect(lambda on: self.open(name if on else ""))
         self.pages[name], self.toggles[name] = page, toggle
         page.hide()

@@ -15,14 +15,11 @@ from qtpy.QtGui import (
     QDragEnterEvent,
     QDropEvent,
     QKeyEvent,
-    QKeySequence,
     QResizeEvent,
-    QShortcut,
 )
 from qtpy.QtWidgets import QApplication, QGridLayout, QMainWindow, QSplitter, QTabWidget, QWidget
 
 from sfumato import Document, Scene
-from sfumato.scene import STANDARD_VIEWS
 
 from . import camera_moves
 from .autosave import Autosave
@@ -47,6 +44,7 @@ from .thumbnails import Thumbnails
 from .trouble import Trouble
 from .viewport import Viewport
 from .vtk_view.layout import VtkLayout
+from .window_commands import window_commands
 from .worker import RenderWorker
 
 PANEL_WIDTH = 320
@@ -94,7 +92,7 @@ class MainWindow(QMainWindow):
         self._closed = False
         self._lay_out()
         self._connect()
-        self._add_shortcuts()
+        self.commands = window_commands(self)
         self._restore()
         self._show_document()
         self.worker.start()
@@ -128,7 +126,7 @@ class MainWindow(QMainWindow):
         grid.addWidget(self.views, 1, 1)
         grid.addWidget(self.panel, 1, 2, 2, 1)
         self.status.add_button(
-            self.drawer.add("history", "History", "Every step, to return to (H)", self.history)
+            self.drawer.add("history", "History", "Every step, to return to", self.history)
         )
         grid.addWidget(self.drawer, 2, 0, 1, 2)
         grid.addWidget(self.status, 3, 0, 1, 3)
@@ -175,28 +173,6 @@ class MainWindow(QMainWindow):
         self.autosave.failed.connect(
             lambda why: self.messages.show_notice(f"The scene could not be autosaved: {why}")
         )
-
-    def _add_shortcuts(self) -> None:
-        for keys, act in {
-            "Ctrl+O": self.files.ask_to_open,
-            "Ctrl+Shift+O": self.files.ask_to_open_folder,
-            "Ctrl+S": lambda: self.files.save_scene(),
-            "Ctrl+Shift+S": lambda: self.files.ask_to_save_scene(),
-            "Ctrl+E": self.exporter.ask,
-            "Ctrl+Shift+C": self.exporter.copy,
-            "Ctrl+Z": self.editor.undo,
-            "Ctrl+Shift+Z": self.editor.redo,
-            "Ctrl+Y": self.editor.redo,
-            "Home": lambda: self.look(""),
-            "Esc": lambda: self.strip.choose("orbit"),
-            "L": lambda: self.strip.choose("light"),
-            "C": lambda: self.strip.choose("clip"),
-            "V": self.strip.vtk.toggle,
-            "H": lambda: self.drawer.toggle("history"),
-        }.items():
-            QShortcut(QKeySequence(keys), self).activated.connect(act)
-        for i, view in enumerate(STANDARD_VIEWS):
-            QShortcut(QKeySequence(str(i + 1)), self).activated.connect(lambda view=view: self.look(view))
 
     def _restore(self) -> None:
         kept = settings()

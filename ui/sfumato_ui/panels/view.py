@@ -20,6 +20,7 @@ from sfumato import Camera, Scene
 from sfumato.scene import STANDARD_VIEWS, fields_of
 
 from .. import camera_moves
+from ..bindings import explain
 from ..clip_controls import ClipControls, CropControls
 from ..clip_planes import ClipPlanes
 from ..editing import Editor
@@ -97,7 +98,7 @@ class ViewPage(Page):
             button = QPushButton(name.capitalize())
             button.setProperty("compact", True)
             button.setAccessibleName(f"View from the {name}")
-            button.setToolTip(f"See the whole from the {name} ({i + 1})")
+            explain(button, f"See the whole from the {name}", f"view-{name}")
             button.clicked.connect(lambda _=False, name=name: self.view_chosen.emit(name))
             grid.addWidget(button, i // 3, i % 3)
         return box
