@@ -17,6 +17,8 @@ from sfumato_app.gallery.hero import hero_panels
 
 PAPER_FIGURES = (1, 8, 9, 10, 11, 12, 13, 14)
 COUNTS = {1: 4, 8: 3, 9: 2, 10: 4, 11: 4, 12: 4, 13: 4, 14: 2}
+#: Of Schlegel2011: numbers, and how many panels we make of each.
+EXTINCTION = {1: 4, 2: 2, 4: 2, 6: 2, 8: 2, 9: 2, 10: 4, 11: 4, 12: 2}
 
 
 def scenes(figure: Figure) -> list[Scene]:
@@ -43,8 +45,20 @@ def test_figure_is_whole(number: int) -> None:
     assert all(Scene.from_json(scene.to_json(), scene.volume) == scene for scene in scenes(figure))
 
 
+@pytest.mark.parametrize("number", EXTINCTION)
+def test_figure_of_extinction_is_whole(number: int) -> None:
+    figure = FIGURES[f"schlegel2011-{number}"]()
+    assert (figure.paper, figure.number) == ("Schlegel2011", number)
+    assert figure.id == f"schlegel2011-{number}"
+    assert figure.file_name == f"schlegel2011-fig{number:02d}.png"
+    assert len(scenes(figure)) == EXTINCTION[number]
+    assert figure.caption.endswith(".")
+    assert {scene.technique_id for scene in scenes(figure)} == {"extinction"}
+    assert all(Scene.from_json(scene.to_json(), scene.volume) == scene for scene in scenes(figure))
+
+
 def test_numbers_are_the_papers() -> None:
-    assert tuple(FIGURES) == PAPER_FIGURES
+    assert tuple(FIGURES) == (*PAPER_FIGURES, *(f"schlegel2011-{n}" for n in EXTINCTION))
 
 
 @pytest.mark.parametrize("number", [1, 12])

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -21,10 +22,21 @@ TRIFLE = 1e-4
 
 
 class Ours:
-    """One of our techniques, its light at rest: what it keeps of its light from frame to frame it uses."""
+    """One of our techniques, its light at rest: what it keeps of its light from frame to frame it uses.
+
+    Parameters
+    ----------
+    changes : mapping, optional
+        By dotted paths, what is other than in the setting's scene.
+    """
 
     def __init__(
-        self, renderer: sfumato.Renderer, setting: Setting, technique: str, quality: Quality = FULL
+        self,
+        renderer: sfumato.Renderer,
+        setting: Setting,
+        technique: str,
+        quality: Quality = FULL,
+        changes: Mapping[str, Any] | None = None,
     ) -> None:
         self._renderer = renderer
         self._quality = quality
@@ -32,7 +44,7 @@ class Ours:
         self._light = np.zeros((0, 0, 3), dtype=np.float32)
         self._keep = False
         try:
-            self._scene = setting.scene(technique)
+            self._scene = setting.scene(technique).with_(dict(changes or {}))
             renderer.painter(self._scene)
         except (sfumato.SfumatoError, ImportError) as error:
             raise Unavailable(str(error)) from None
@@ -79,8 +91,9 @@ class MovingLight(Ours):
         angle: str,
         swing: int = SWING,
         quality: Quality = FULL,
+        changes: Mapping[str, Any] | None = None,
     ) -> None:
-        super().__init__(renderer, setting, technique, quality)
+        super().__init__(renderer, setting, technique, quality, changes)
         self._paths = [f"lights.{k}.{angle}" for k in range(len(self._scene.lights))]
         self._starts = [getattr(light, angle) for light in self._scene.lights]
         self._turns = _swing(swing)

@@ -53,6 +53,20 @@ RATIOS = (
     Ratio("a drag's frame / ray casting", "cone-drag", "raycast", Goal(1.2)),
     Ratio("a drag's frame / ray casting", "multidirectional-drag", "raycast"),
     Ratio("light kept / light moved", "cone-still", "cone"),
+    # Schlegel2011, Table 1: 1.13 to 1.86, its engine with a moving light 2.3, light from all around alone 1.29.
+    Ratio("extinction, light at rest / ray casting", "extinction-still", "raycast", Goal(1.3)),
+    Ratio("extinction, light at rest / ray casting", "extinction-still", "raycast", Goal(1.15, gpu=True)),
+    Ratio("extinction, light moving / ray casting", "extinction-moving", "raycast", Goal(1.8)),
+    Ratio("extinction, ambient alone / ray casting", "extinction-ambient", "raycast", Goal(1.8)),
+    Ratio("extinction with slopes / Phong", "extinction", "raycast-phong"),
+    *(
+        Ratio(f"light of {n}^3 / ray casting", f"extinction-build-{n}", "raycast")
+        for n in (64, 128, 192, 256)
+    ),
+    # The paper: 0.0307 s against 3.08 s at 256^3 (Table 2).
+    Ratio(
+        "explicit sampling / shells", "extinction-explicit", "extinction-shells", Goal(45.0, at_least=True)
+    ),
     Ratio("VTK on the CPU / ours", "vtk-cpu", "raycast"),
 )
 

@@ -5,17 +5,21 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sfumato
 from sfumato.renderer import DRAG, FULL, Quality
 
 from .contender import Contender
+from .extinction import Building, Neighbourhood
 from .ours import SWING, MovingLight, Ours
 from .setting import Setting
 
 if TYPE_CHECKING:
     from .peer_vtk import VtkStage
+
+#: Sides of light caches whose making is timed.
+CELLS = (64, 128, 192, 256)
 
 
 @dataclass
@@ -98,6 +102,14 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("cone-still", "... its light kept from the frame before", _ours("cone")),
         ("cone-turning", "... its light turning", _moving("cone", "rotation")),
         ("cone-drag", "... at drag quality, its light turning", _moving("cone", "rotation", quality=DRAG)),
+        # Slope shading takes a gradient a sample, as Phong does; without it light is one look-up.
+        ("extinction", "extinction-based light, slopes shaded, light at rest", _extinction()),
+        ("extinction-still", "... without slopes", _extinction(facing=0.0)),
+        ("extinction-ambient", "... light from all around alone", _extinction(facing=0.0, lamp=False)),
+        ("extinction-moving", "... its lamp moving, 64 cells a side", _moving_extinction),
+        *((f"extinction-build-{n}", f"... light made anew, {n} cells a side", _building(n)) for n in CELLS),
+        ("extinction-shells", "... 3 shells, 64 cells a side", _neighbourhood(explicit=False)),
+        ("extinction-explicit", "... each cell within 7, 64 cells a side", _neighbourhood(explicit=True)),
         ("vtk-gpu-shadows", "VTK GPU mapper, volumetric shadows", _vtk("gpu_shadow_mapper", shade=True)),
     )
     return tuple(Row(key, label, key.startswith("vtk-"), setting, make) for key, label, make in table)
@@ -111,6 +123,26 @@ def _moving(
     technique: str, angle: str, swing: int = SWING, quality: Quality = FULL
 ) -> Callable[[Stage, Setting], Contender]:
     return lambda stage, setting: MovingLight(stage.renderer, setting, technique, angle, swing, quality)
+
+
+def _extinction(facing: float | None = None, lamp: bool = True) -> Callable[[Stage, Setting], Contender]:
+    changes: dict[str, Any] = {} if facing is None else {"technique.facing": facing}
+    if not lamp:
+        changes["lights"] = ()
+    return lambda stage, setting: Ours(stage.renderer, setting, "extinction", changes=changes)
+
+
+def _moving_extinction(stage: Stage, setting: Setting) -> Contender:
+    changes = {"technique.facing": 0.0, "technique.resolution": 64}
+    return MovingLight(stage.renderer, setting, "extinction", "rotation", changes=changes)
+
+
+def _building(cells: int) -> Callable[[Stage, Setting], Contender]:
+    return lambda stage, setting: Building(stage.renderer, setting, cells)
+
+
+def _neighbourhood(*, explicit: bool) -> Callable[[Stage, Setting], Contender]:
+    return lambda stage, setting: Neighbourhood(stage.renderer, setting, explicit)
 
 
 def _vtk(mapper: str, *, shade: bool) -> Callable[[Stage, Setting], Contender]:

@@ -24,14 +24,14 @@ HERO = "hero.png"
 
 _program = App(
     name="sfumato gallery",
-    help="Draw the figures of Soltesova2010 with our samples, and the page that shows them.",
+    help="Draw the papers' figures with our samples, and the page that shows them.",
     help_format="plaintext",
     result_action="return_value",
 )
 
 
-def chosen(only: str) -> tuple[int, ...]:
-    """Return the numbers of the figures asked for, in the paper's order; all, if none is named.
+def chosen(only: str) -> tuple[int | str, ...]:
+    """Return the figures asked for, in the papers' order; all, if none is named.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def chosen(only: str) -> tuple[int, ...]:
         raise UsageError(
             f"--only {only}: there is no figure {unknown[0]}; known: {', '.join(map(str, FIGURES))}"
         )
-    return tuple(number for number in FIGURES if not words or str(number) in words)
+    return tuple(figure for figure in FIGURES if not words or str(figure) in words)
 
 
 @_program.default
@@ -55,7 +55,7 @@ def _command(
         Parameter(name=["--output", "-o"], help="Folder of the pictures; the page lies beside it."),
     ] = FOLDER,
     only: Annotated[
-        str, Parameter(help="Numbers of figures, as in 1,8; the page is written once all are there.")
+        str, Parameter(help="Figures, as in 1,8,schlegel2011-9; the page is written once all are there.")
     ] = "",
     hero: Annotated[bool, Parameter(negative="", help="Draw the README's picture instead.")] = False,
     scale: Annotated[float, Parameter(help="Of the pictures' sides.")] = 1.0,

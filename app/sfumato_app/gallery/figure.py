@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from sfumato import Scene, Volume
 
+#: The paper whose figures go by their numbers alone.
+FIRST = "Soltesova2010"
 #: Jittered frames of a finished panel.
 FRAMES = 8
 #: Linear colour behind the subjects: a cool grey, darker than ivory in the light, lighter than any shadow.
@@ -52,7 +54,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Figure:
-    """One figure of Soltesova2010, made again.
+    """One figure of a paper, made again.
 
     Parameters
     ----------
@@ -66,6 +68,8 @@ class Figure:
         From left to right.
     size : (width, height)
         Of a finished panel in pixels.
+    paper : str
+        Key of the paper.
     """
 
     number: int
@@ -73,16 +77,23 @@ class Figure:
     caption: str
     panels: tuple[Panel, ...]
     size: tuple[int, int] = (480, 480)
+    paper: str = FIRST
 
     @property
     def file_name(self) -> str:
         """Name of the picture file."""
-        return file_name(self.number)
+        return file_name(self.id)
+
+    @property
+    def id(self) -> str:
+        """What ``--only`` calls it: its number, after the paper's key if it is not the first paper's."""
+        return str(self.number) if self.paper == FIRST else f"{self.paper.lower()}-{self.number}"
 
 
-def file_name(number: int) -> str:
-    """Return the name of a figure's picture file."""
-    return f"fig{number:02d}.png"
+def file_name(figure: int | str) -> str:
+    """Return the name of a figure's picture file, by its `Figure.id`."""
+    paper, _, number = str(figure).rpartition("-")
+    return f"{paper + '-' if paper else ''}fig{int(number):02d}.png"
 
 
 def panels(*parts: tuple[Scene | Cuts, str]) -> tuple[Panel, ...]:

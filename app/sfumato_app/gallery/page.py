@@ -22,6 +22,16 @@ figure; the aperture is the half angle of its cone.
 
 Drawn on {day} with {renderer}.
 """
+_PAPERS = {
+    "Soltesova2010": "",
+    "Schlegel2011": """
+# Extinction-based shading
+
+The figures of [Schlegel2011](https://doi.org/10.1109/TVCG.2011.198), *Extinction-based Shading and Illumination in
+GPU Volume Ray-Casting*, made again with our samples by `extinction`. Lamps stand where the captions say; the cone's
+half angle stands below each figure where it is not the lamp's own.
+""",
+}
 _FIGURE = """
 ## Figure {number}: {title}
 
@@ -51,7 +61,11 @@ def write_page(path: Path, figures: Mapping[Figure, Path], renderer: str, day: d
         If it cannot be written.
     """
     parts = [_HEAD.format(command=COMMAND, renderer=renderer, day=day.isoformat())]
-    parts += [_section(figure, _relative(picture, path.parent)) for figure, picture in figures.items()]
+    papers = [figure.paper for figure in figures]
+    for (figure, picture), before in zip(figures.items(), ["", *papers], strict=False):
+        if figure.paper != before:
+            parts.append(_PAPERS[figure.paper])
+        parts.append(_section(figure, _relative(picture, path.parent)))
     try:
         path.write_text("".join(parts), encoding="utf-8")
     except OSError as error:
@@ -66,7 +80,7 @@ def _section(figure: Figure, picture: str) -> str:
         alt=f"Figure {figure.number}: {figure.title}",
         picture=picture,
         caption=figure.caption,
-        notes=f"{notes}.  \n`{COMMAND} --only {figure.number}`",
+        notes=f"{notes}.  \n`{COMMAND} --only {figure.id}`",
     )
 
 
@@ -75,7 +89,7 @@ def _angles(panel: Panel) -> str:
     if (
         isinstance(panel.picture, Cuts)
         or "tilt" in panel.note
-        or panel.picture.technique_id in GRADIENT_SHADED
+        or panel.picture.technique_id in (*GRADIENT_SHADED, "extinction")
     ):
         return ""
     (lamp,) = panel.picture.active_lights

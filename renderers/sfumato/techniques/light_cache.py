@@ -117,6 +117,10 @@ class LightCache:
         """Free everything."""
         if self._store is not None:
             self._store.dismiss(self)
+        self.clear()
+
+    def clear(self) -> None:
+        """Free all textures; it can be used again."""
         for texture in self._kept.values():
             texture.release()
         self._kept.clear()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..figure import Figure
+from . import extinction_places, extinction_scans, extinction_terms
 from .bonsai import figure_14
 from .cone import figure_8
 from .fish import figure_9
@@ -13,8 +14,8 @@ from .heart import figure_13
 from .skull import figure_10
 from .torso import figure_12
 
-#: By number in the paper.
-FIGURES: dict[int, Callable[[], Figure]] = {
+#: By number in Soltesova2010, or by another paper's key and its number there.
+FIGURES: dict[int | str, Callable[[], Figure]] = {
     1: figure_1,
     8: figure_8,
     9: figure_9,
@@ -23,4 +24,13 @@ FIGURES: dict[int, Callable[[], Figure]] = {
     12: figure_12,
     13: figure_13,
     14: figure_14,
+    "schlegel2011-1": extinction_places.figure_1,
+    "schlegel2011-2": extinction_terms.figure_2,
+    "schlegel2011-4": extinction_terms.figure_4,
+    "schlegel2011-6": extinction_terms.figure_6,
+    "schlegel2011-8": extinction_scans.figure_8,
+    "schlegel2011-9": extinction_places.figure_9,
+    "schlegel2011-10": extinction_scans.figure_10,
+    "schlegel2011-11": extinction_scans.figure_11,
+    "schlegel2011-12": extinction_scans.figure_12,
 }

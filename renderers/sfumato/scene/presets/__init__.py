@@ -11,13 +11,24 @@ from ...errors import SceneError
 from ..transfer import TransferFunction
 from ..volume import Volume
 from .hounsfield import hounsfield_presets
+from .media import MEDIA, Medium, filled, media_presets
 from .preset import Preset
 from .relative import mr_presets, plain_presets, ultrasound_presets
 from .table import suggest_clip
 from .values import hounsfield_zero, is_slab, levels, remembered, thinned
 from .view import suggest_view
 
-__all__ = ["Preset", "preset", "presets_for", "suggest_clip", "suggest_transfer", "suggest_view"]
+__all__ = [
+    "MEDIA",
+    "Medium",
+    "Preset",
+    "filled",
+    "preset",
+    "presets_for",
+    "suggest_clip",
+    "suggest_transfer",
+    "suggest_view",
+]
 
 
 #: A subject that fills less than this share of its volume is a tree of vessels.
@@ -26,7 +37,12 @@ SPARSE = 0.025
 
 @remembered
 def presets_for(volume: Volume) -> tuple[Preset, ...]:
-    """Return all presets that suit a volume, the best first."""
+    """Return all presets that suit a volume, the best first; last the best one in smoke, fog and wax."""
+    clear = _in_clear_air(volume)
+    return (*clear, *media_presets(clear[0], volume))
+
+
+def _in_clear_air(volume: Volume) -> tuple[Preset, ...]:
     zero = hounsfield_zero(volume)
     if zero is not None:
         return _by_content(hounsfield_presets(zero), volume, zero)

@@ -25,8 +25,24 @@ from ..world_light import MULTIPLE, CellGrid
 LARGEST_SUM = 0.99 * (2**32 - 1)
 #: Most samples along a cell's edge for its mean extinction.
 MOST_SAMPLES = 4
+#: Voxels within which a surface's opacity rises.
+SURFACE = 1.5
 #: Layers drawn before a newer scene is looked for.
 LAYERS_PER_PIECE = 16
+
+
+def lift(grid: CellGrid, voxel: float) -> float:
+    """Return how far before a surface, in mm, its light is looked up.
+
+    Far enough to leave the voxels in which its opacity rises: within them light is dimmed already, the more the
+    finer the cells are, and a surface would be the darker the higher the resolution.
+
+    Parameters
+    ----------
+    voxel : float
+        The volume's mean spacing, mm.
+    """
+    return max(grid.cell_mm, SURFACE * voxel)
 
 
 @dataclass
@@ -138,6 +154,8 @@ class FieldMaker:
                 yield 0.6 + share * (number + done)
         near = self._near.get(())
         made.matter.bind(near)
+        # Light is looked up as far from a surface as `lift` says, between cells, and carried on from one more.
+        near.set(u_reach=2 + math.ceil(lift(grid, made.voxel) / grid.cell_mm - 1e-6))
         for done in draw_layers(self.device, near, made.near):
             yield 0.95 + 0.05 * done
 

@@ -11,7 +11,7 @@ uniform float u_cell_mm;             // their mean, to which the cells' optical 
 uniform vec4 u_lamp;                 // in mm from the corner of cell 0 along the volume's axes: place (w = 1), or unit vector towards it (w = 0)
 uniform float u_tangent;             // of the lamp's half angle; < 0: from its radius
 uniform float u_radius;              // mm
-uniform vec2 u_disc[CONES];          // places of the narrow cones in the unit disc
+uniform vec2 u_disc[CONES];          // places of the narrow cones in the unit disc, spread over a cell as well
 uniform vec3 u_place[CONES];         // places on the lamp, mm
 uniform float u_part;                // radius of a narrow cone: share of the disc's (POINTS 0), or mm
 uniform vec3 u_shines;               // unit vector in which an area lamp shines; zero: in all directions
@@ -25,6 +25,8 @@ uniform float u_strength;
 layout(location = 0) out float o_light;
 
 const int MOST = 160;                // sections of a cone
+const float ACROSS_A_CELL = 0.6;     // radius in cells within which the cones start
+const float DRIFT = 1.0;             // cells by which a section's way may leave its box
 const float DARK = 3e-4;             // light that is as good as none
 
 // Light on its way through a cone, from section to section: background * (1 - share + share * within).
@@ -60,8 +62,10 @@ vec3 turned(vec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.yzx : v.zxy
 ivec3 turned(ivec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.yzx : v.zxy; }
 ivec3 turned_back(ivec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.zxy : v.yzx; }
 
-// Light that comes through a cone from a cell along a unit vector, as far as `end` mm.
-float through(ivec3 cell, vec3 along, float tangent, float end) {
+// Light that comes through a cone from a cell along a unit vector, as far as `end` mm. It starts that far beside the
+// cell's middle, in cells: boxes are whole cells, and cones that all start alike would round theirs alike, which
+// leaves steps in the shadows of small lamps.
+float through(ivec3 cell, vec3 along, float tangent, float end, vec2 beside) {
     vec3 steep = abs(along / u_edge_mm);
     int axis = steep.x >= max(steep.y, steep.z) ? 0 : steep.y >= steep.z ? 1 : 2;
     vec3 edge = turned(u_edge_mm, axis), way = turned(along, axis), at = vec3(turned(cell, axis)) + 0.5;
@@ -69,13 +73,16 @@ float through(ivec3 cell, vec3 along, float tangent, float end) {
     int sign_of = way.x > 0.0 ? 1 : -1;
     float length_mm = edge.x / abs(way.x);                          // of the way through one layer of cells
     vec2 slope = way.yz / abs(way.x) * edge.x / edge.yz;            // cells across for one along
+    float slant = max(abs(slope.x), abs(slope.y));
     vec2 lean = sqrt(1.0 + way.yz * way.yz / (way.x * way.x));      // a section across the axis is longer than the cone is wide
     float last = end / length_mm;                                   // in layers from the cell's centre
     int begin = 1;                                                  // layers from the cell's own
     float width = u_first;
     Passing light = Passing(1.0, 0.0, 1.0);
     for (int i = 0; i < MOST && light_of(light) > DARK; ++i) {
-        int count = max(int(width + 0.5), 1), next = begin + count;
+        // A box lies straight: along a slanting way a section is not longer than the cone stays in it.
+        float wide = 2.0 * tangent * (float(begin) + 0.5 * width) * length_mm / max(edge.y, edge.z);
+        int count = max(int(min(min(width, last - float(begin) + 0.5), (wide + DRIFT) / max(slant, 1e-3)) + 0.5), 1), next = begin + count;
         float from = float(begin) - 0.5, to = float(next) - 0.5;
         if (from >= last) break;
         // The section's layers, from low to below high, as far as they lie in the volume.
@@ -83,7 +90,7 @@ float through(ivec3 cell, vec3 along, float tangent, float end) {
         ivec2 along_axis = clamp(ivec2(first_layer, first_layer + count), ivec2(0), ivec2(cells.x));
         if (along_axis.x >= along_axis.y) break;
         float middle = 0.5 * (from + to);
-        vec2 center = at.yz + slope * middle, half_width = tangent * middle * length_mm / edge.yz * lean;
+        vec2 center = at.yz + beside + slope * middle, half_width = tangent * middle * length_mm / edge.yz * lean;
         ivec2 low = ivec2(floor(center - half_width + 0.5)), high = ivec2(floor(center + half_width + 0.5));
         ivec2 own = ivec2(floor(center));
         low = min(low, own);
@@ -129,15 +136,16 @@ void main() {
         float weight = dot(u_shines, u_shines) > 0.0 ? max(dot(-along, u_shines), 0.0) : 1.0;
         weights += 1.0;
         if (weight <= 0.0) continue;
-        float tangent = u_tangent >= 0.0 ? u_tangent : u_part / distance_mm;
-        sum += weight * through(cell, along, tangent, distance_mm);
+        // A rectangle seen from the side is narrow, and what lies behind it is not in the way.
+        float tangent = u_tangent >= 0.0 ? u_tangent : u_part * max(weight, 0.1) / distance_mm;
+        sum += weight * through(cell, along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k]);
     }
 #else
     float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / away;
     mat2x3 sides = across(axis);
     for (int k = 0; k < CONES; ++k) {
         vec3 along = normalize(axis + sides * (u_disc[k] * tangent));
-        sum += through(cell, along, tangent * u_part, away);
+        sum += through(cell, along, tangent * u_part, away, ACROSS_A_CELL * u_disc[k]);
         weights += 1.0;
     }
 #endif

@@ -63,7 +63,9 @@ def emitter(frame: Frame, grid: CellGrid, light: Light) -> Emitter:
         if light.shape == "rectangle":
             common["u_shines"] = tuple(shines.tolist())
         in_grid = np.array([_in_grid(frame, grid, p) for p in places])
-        return _made(True, common | {"u_place": in_grid.astype(np.float32), "u_part": part})
+        return _made(
+            True, common | _disc(params.cones) | {"u_place": in_grid.astype(np.float32), "u_part": part}
+        )
     if light.kind == "spot":
         inner = max(0.0, light.spread - light.edge)
         common["u_beam"] = tuple(shines.tolist())

@@ -25,7 +25,7 @@ from ..marcher import (
     visible_box,
 )
 from ..world_light import CellGrid, grid_over, place_uniforms
-from .field import Field, FieldMaker, draw_layers, new_texture
+from .field import Field, FieldMaker, draw_layers, lift, new_texture
 from .lamps import Emitter, emitter
 from .terms import TermMaker, densities
 
@@ -106,6 +106,11 @@ class ExtinctionPainter:
             yield 0.5 + 0.5 * done
         self.marcher.finish(frame)
         yield 1.0
+
+    def forget(self) -> None:
+        """Free all light that is kept: the next frame makes it anew."""
+        for kept in (self.kept_worlds, self.kept_lamps, self.kept_ambient, self.kept_fields):
+            kept.clear()
 
     # -- the light cache --------------------------------------------------------------------------
     def _plan(self, frame: Frame, material: Material) -> Plan:
@@ -194,7 +199,7 @@ class ExtinctionPainter:
         program.bind(u_world_light=world.world, u_world_lamps=world.lamps)
         program.set(
             u_facing=params.facing, u_specular=params.specular, u_shininess=params.shininess,
-            **grid.uniforms, **place_uniforms(frame, own),
+            **{**grid.uniforms, "u_world_lift": lift(grid, frame.volume.unit_distance)}, **place_uniforms(frame, own),
         )  # fmt: skip
         return program
 

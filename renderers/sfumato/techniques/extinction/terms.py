@@ -106,16 +106,33 @@ class TermMaker:
         self._spread = Variants(device, folder + "spread.frag.glsl")
 
     def ambient(
-        self, field: Field, grid: CellGrid, params: ExtinctionParams, radius: float, texture: Any
+        self,
+        field: Field,
+        grid: CellGrid,
+        params: ExtinctionParams,
+        radius: float,
+        texture: Any,
+        spread: bool = True,
     ) -> Generator[float, None, None]:
-        """Fill a texture with light from all around, linear RGB, yielding the share done."""
+        """Fill a texture with light from all around, linear RGB, yielding the share done.
+
+        Parameters
+        ----------
+        radius : float
+            Half the edge of the outermost shell, mm.
+        spread : bool
+            Whether it is carried on into the cells of surfaces.
+        """
         half, weight = lay_shells(grid, params.shells, radius)
         program = self._ambient.get((("SHELLS", len(half)),))
         assert field.dimming is not None
         field.dimming.bind(program)
-        program.bind(u_near=field.near)
+        program.bind(u_near=field.near, u_means=field.dimming.cells)
         program.set(u_half=half, u_weight=weight.astype(np.float32), u_strength=params.shell_strength)
-        yield from self._draw_and_spread(field, grid, program, texture)
+        if spread:
+            yield from self._draw_and_spread(field, grid, program, texture)
+        else:
+            yield from draw_layers(self.device, program, texture)
 
     def lamp(
         self, field: Field, grid: CellGrid, params: ExtinctionParams, lamp: Emitter, texture: Any
