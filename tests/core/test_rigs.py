@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import sfumato
 from sfumato import Light, Scene, SceneError, TransferFunction, Volume
 from sfumato.scene import MAX_LIGHTS
 from sfumato.scene.rigs import rig_named, rig_of, rigs
+from sfumato_app.first_picture import CLIPPED, MEDIAN, look_at
 
 SKIN = (0.62, 0.36, 0.26)
 
@@ -53,6 +55,16 @@ def test_a_rig_is_neither_dull_nor_clipped(subject: Scene, name: str) -> None:
     seen = picture[picture[..., 3] > 250][:, :3]
     assert 70 <= np.median(seen.mean(axis=1)) <= 190
     assert (seen.max(axis=1) == 255).mean() < 0.15
+
+
+@pytest.mark.real_data
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["three-point", "rim", "raking"])
+def test_several_lamps_do_not_clip_a_head(data_dir: Path, name: str) -> None:
+    head = Scene(volume=sfumato.load(data_dir / "mr_head_electrodes" / "MR.nii.gz"), step=1.0)
+    _, figures = look_at(head.with_(lights=rigs()[name].lights), (112, 112))
+    assert figures.clipped < CLIPPED
+    assert MEDIAN[0] <= figures.median <= MEDIAN[1]
 
 
 def test_no_two_rigs_look_alike(subject: Scene) -> None:
