@@ -21,6 +21,12 @@ _HOME = "SFUMATO_TEST_HOME"
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--all", action="store_true", help="run the slow tests too (as SFUMATO_ALL=1)")
+    parser.addoption(
+        "--measured",
+        choices=("also", "not", "only"),
+        default="also",
+        help="tests that measure how long the window stalls: with the others, not, or they alone",
+    )
     parser.addoption("--accept-images", action="store_true", help="expect the pictures drawn now")
 
 
@@ -51,7 +57,22 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker(pytest.mark.skip(reason="slow: ./run test --all"))
         if item.get_closest_marker("real_data") and not DATA.is_dir():
             item.add_marker(pytest.mark.skip(reason=f"the real data sets are not at {DATA}"))
+    _choose_measured(config, items)
     items.sort(key=_rank)
+
+
+def _choose_measured(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave the tests that measure time for a process of their own, or the others."""
+    choice = config.getoption("--measured")
+    if choice == "also":
+        return
+    chosen: list[pytest.Item] = []
+    others: list[pytest.Item] = []
+    for item in items:
+        measured = item.get_closest_marker("measured") is not None
+        (chosen if measured == (choice == "only") else others).append(item)
+    config.hook.pytest_deselected(items=others)
+    items[:] = chosen
 
 
 def _rank(item: pytest.Item) -> tuple[bool, int]:

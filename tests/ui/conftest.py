@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import subprocess
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -19,6 +22,23 @@ from sfumato_ui.theme import apply_theme
 from sfumato_ui.window import MainWindow
 
 LEFT = Qt.MouseButton.LeftButton
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Give the second of two processes a screen of its own: on one screen they would take each other's focus."""
+    second = os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0"
+    if second and os.environ.get("DISPLAY") and shutil.which("Xvfb"):
+        command = ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"]
+        screen = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        assert screen.stdout is not None
+        os.environ["DISPLAY"] = f":{screen.stdout.readline().strip()}"
+        os.environ.pop("XAUTHORITY", None)
+        config.add_cleanup(lambda: _end(screen))
+
+
+def _end(screen: subprocess.Popen[str]) -> None:
+    screen.terminate()
+    screen.wait()
 
 
 def ball(n: int = 40) -> Volume:

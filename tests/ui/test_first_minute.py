@@ -62,6 +62,7 @@ def test_a_slow_device_settles_on_fewer_frames() -> None:
 
 @pytest.mark.real_data
 @pytest.mark.slow
+@pytest.mark.measured
 @pytest.mark.gpu
 @pytest.mark.timeout(400)
 @pytest.mark.parametrize(

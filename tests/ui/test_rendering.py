@@ -52,6 +52,7 @@ def longest_gap(qtbot: QtBot, milliseconds: int) -> float:
     return max(gaps)
 
 
+@pytest.mark.measured
 def test_the_event_loop_never_stalls_during_a_heavy_render(make_window: Any, qtbot: QtBot) -> None:
     window = make_window(size=(1200, 860))
     # What the machine itself does to an idle loop, with other programs beside us, is not ours.
@@ -74,6 +75,7 @@ def test_pictures_keep_coming_while_the_hand_moves(window: MainWindow, hand: Any
     hand.wait_for_picture()
 
 
+@pytest.mark.measured
 def test_closing_while_rendering_is_quick(make_window: Any, qtbot: QtBot) -> None:
     window = make_window(Scene(volume=noisy(96), step=0.25))
     qtbot.waitUntil(lambda: window.viewport.picture is not None, timeout=120_000)

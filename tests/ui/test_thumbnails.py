@@ -103,6 +103,7 @@ def test_forgotten_wishes_are_not_drawn(window: MainWindow, album: Album, qtbot:
     assert not album.told
 
 
+@pytest.mark.measured
 def test_a_drag_does_not_wait_for_them(window: MainWindow, album: Album, hand: Any, qtbot: QtBot) -> None:
     qtbot.waitUntil(lambda: window.viewport.picture.settled, timeout=90_000)
     window.thumbnails.want("test", tilted(window.editor.scene, *range(6)), (900, 900))
