@@ -152,6 +152,9 @@ class ToolStrip(QFrame):
         self.tools = {
             "orbit": _explained("Orbit", "Orbit: drag turns the subject", "tool-orbit"),
             "light": _explained("Light", "Light: drag moves the lamps", "tool-light"),
+            "shadow": _explained(
+                "Shadow", "Shadow: drag the lamp's shadow to where it is to fall", "tool-shadow"
+            ),
             "clip": _explained("Clip", "Clip: drag the faces of the crop box and the planes", "tool-clip"),
         }
         self.vtk = _explained(

@@ -58,6 +58,7 @@ _FIXED = (
     Command("keyboard", "Keyboard: show and change the keys", "Window", ("Ctrl+Shift+K",)),
     Command("tool-orbit", "Tool: Orbit", "Tool", ("Esc",)),
     Command("tool-light", "Tool: Light", "Tool", ("L",)),
+    Command("tool-shadow", "Tool: Shadow", "Tool", ("S",)),
     Command("tool-clip", "Tool: Clip", "Tool", ("C",)),
     Command("fit", "See the whole subject", "View", ("Home",)),
 )

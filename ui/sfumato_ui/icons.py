@@ -16,6 +16,8 @@ _GLYPHS = {
     "unlit": "ph.lightbulb-filament",
     "orbit": "ph.cube",
     "light": "ph.sun",
+    "shadow": "ph.circle-half-tilt",
+    "highlight": "ph.sparkle",
     "fit": "ph.corners-out",
     "clip": "ph.crop",
     "flip": "ph.arrows-left-right",

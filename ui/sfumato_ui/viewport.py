@@ -1,6 +1,7 @@
 """The picture: paints the newest one and turns the hand's moves into edits of camera and lamp.
 
-Left drag does what the tool says: Orbit turns the subject, Light moves lamps, Clip takes the handles of
+Left drag does what the tool says: Orbit turns the subject, Light moves lamps, Shadow places the selected
+lamp's shadow (with Alt its highlight), Clip takes the handles of
 crop box and clip planes and turns the subject beside them. In every tool Shift-drag moves the selected
 lamp, Ctrl or Alt (or the middle button) pans, Ctrl and Shift (or the right button) zooms, a double-click
 re-centres on the surface under the cursor, the wheel zooms about it. Arrow keys do what a drag would, by
@@ -23,7 +24,7 @@ from qtpy.QtGui import (
     QShowEvent,
     QWheelEvent,
 )
-from qtpy.QtWidgets import QSizePolicy, QWidget
+from qtpy.QtWidgets import QLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from sfumato import Camera
 from sfumato.geometry import color_bars
@@ -36,7 +37,7 @@ from .editing import Editor
 from .jobs import Picture
 from .subject import is_open, size_of
 from .theme import DARK, PICTURE_GREY
-from .tools import ClipTool, HandleTool, LightTool, PictureView
+from .tools import ClipTool, HandleTool, LightTool, PictureView, ShadowBar, ShadowTool
 from .tools import light as light_tool
 
 _MODIFIER = Qt.KeyboardModifier
@@ -69,12 +70,19 @@ class Viewport(QWidget):
         #: Whether the lamp in the hand has a place.
         self._carried = False
         #: The tools that have handles.
-        self.tools: dict[str, HandleTool] = {"light": self._light_tool, "clip": ClipTool(editor, self.clips)}
+        shadow = ShadowTool(editor)
+        self.tools: dict[str, HandleTool] = {
+            "light": self._light_tool,
+            "shadow": shadow,
+            "clip": ClipTool(editor, self.clips),
+        }
+        self.shadow_bar = ShadowBar(editor, shadow)
         self.hint = ""
         self.empty_text = "Drop a volume or a folder here, or press Ctrl+O"
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setMinimumSize(240, 180)
+        self._lay_out()
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setAccessibleName("Picture")
         self.setAccessibleDescription(
@@ -87,6 +95,15 @@ class Viewport(QWidget):
         editor.light_selected.connect(lambda index: self.update())
         editor.changed.connect(lambda old, new: self.update())
 
+    def _lay_out(self) -> None:
+        """Let the tool's bar float over the picture's lower edge, above the letter there."""
+        over = QVBoxLayout(self)
+        over.setContentsMargins(12, 12, 12, 36)
+        over.setSizeConstraint(QLayout.SizeConstraint.SetNoConstraint)
+        over.addStretch(1)
+        over.addWidget(self.shadow_bar, 0, Qt.AlignmentFlag.AlignHCenter)
+        self.resized.connect(self.shadow_bar.fit)
+
     def sizeHint(self) -> QSize:
         """Take what is there."""
         return QSize(916, 640)
@@ -94,7 +111,7 @@ class Viewport(QWidget):
     # -- the tool ---------------------------------------------------------------------------------
     @property
     def tool(self) -> str:
-        """The active tool: ``orbit``, ``light`` or ``clip``."""
+        """The active tool: ``orbit``, ``light``, ``shadow`` or ``clip``."""
         return self._tool
 
     @tool.setter
@@ -102,6 +119,7 @@ class Viewport(QWidget):
         for tool in self.tools.values():
             tool.leave()
         self._tool = name
+        self.shadow_bar.set_shown(name == "shadow" and self.view is not None)
         self._hover(None)
         self.update()
 
@@ -220,6 +238,10 @@ class Viewport(QWidget):
         button, keys = event.button(), event.modifiers()
         shift = bool(keys & _MODIFIER.ShiftModifier)
         pan = bool(keys & (_MODIFIER.ControlModifier | _MODIFIER.AltModifier))
+        tool = self.tools.get(self._tool)
+        if tool is not None:
+            tool.alternate = tool.own_alt and keys == _MODIFIER.AltModifier
+            pan = pan and not tool.alternate
         if button == Qt.MouseButton.MiddleButton:
             return "pan"
         if button == Qt.MouseButton.RightButton:

@@ -210,6 +210,7 @@ class MainWindow(QMainWindow):
             self.strip,
             self.drawer,
             self.messages,
+            self.viewport.shadow_bar,
             self.vtk,
             self.light_page,
             self.material_page,

@@ -110,6 +110,36 @@ def _extinction_at(scene: Scene, volume: Volume, points: np.ndarray) -> np.ndarr
     return transfer.extinction(transfer.evaluate_2d(values, gradient)[:, 3], volume.unit_distance)
 
 
+def value_gradient(scene: Scene, points: np.ndarray) -> np.ndarray:
+    """Return the gradient of the volume's value per mm at world points, shape (n, 3), as the renderer takes it."""
+    volume = scene.volume
+    assert volume is not None
+    matrix, dims = volume.texture_from_world[:3], np.array(volume.dims)
+    index = (points @ matrix[:, :3].T + matrix[:, 3]) * dims - 0.5
+    per_voxel = [
+        (_trilinear(volume.data, index + e) - _trilinear(volume.data, index - e)) / 2 for e in np.eye(3)
+    ]
+    return np.asarray((np.stack(per_voxel, axis=-1) * dims) @ matrix[:, :3])
+
+
+def transmittance_between(scene: Scene, start: np.ndarray, end: np.ndarray) -> float:
+    """Return the share of light that passes from one world point to another through what is shown, 0 to 1."""
+    volume = scene.volume
+    assert volume is not None
+    way = np.asarray(end, dtype=float) - start
+    length = float(np.linalg.norm(way))
+    if length <= 0:
+        return 1.0
+    near, far = _shown_interval(scene, volume, np.asarray(start, dtype=float), way / length)
+    near, far = max(near, 0.0), min(far, length)
+    if not near < far:
+        return 1.0
+    count = max(1, round((far - near) / (STEP_VOXELS * volume.min_spacing)))
+    step = (far - near) / count
+    points = start + way / length * (near + step * (np.arange(count) + 0.5))[:, None]
+    return float(np.exp(-step * _extinction_at(scene, volume, points).sum()))
+
+
 def _trilinear(data: np.ndarray, index: np.ndarray) -> np.ndarray:
     """Return values at voxel indices (x, y, z), clamped at the edge; shape (n,)."""
     top = np.array(data.shape[::-1]) - 1
@@ -124,4 +154,4 @@ def _trilinear(data: np.ndarray, index: np.ndarray) -> np.ndarray:
     return total
 
 
-__all__ = ["ray_through", "surface_under"]
+__all__ = ["ray_through", "surface_under", "transmittance_between", "value_gradient"]

@@ -3,6 +3,7 @@
 - `handles`: what a handle is, how it is hit, drawn, focused.
 - `view`: from world to picture and back.
 - `light`: every lamp on a hemisphere before the picture.
+- `shadow`: what casts a shadow and where it falls; the lamp is solved for.
 - `clip`: the crop box's faces (`crop`) and the clip planes (`planes`).
 
 The Orbit tool has no handles; `viewport` turns the camera itself.
@@ -11,6 +12,8 @@ The Orbit tool has no handles; `viewport` turns the camera itself.
 from .clip import ClipTool
 from .handles import HandleTool
 from .light import LightTool
+from .shadow import ShadowTool
+from .shadow_bar import ShadowBar
 from .view import PictureView
 
-__all__ = ["ClipTool", "HandleTool", "LightTool", "PictureView"]
+__all__ = ["ClipTool", "HandleTool", "LightTool", "PictureView", "ShadowBar", "ShadowTool"]

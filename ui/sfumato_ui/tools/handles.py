@@ -65,8 +65,12 @@ class HandleTool:
     """A tool with handles; which one is under the pointer, taken, or focused for the keys."""
 
     cursor = Qt.CursorShape.ArrowCursor
+    #: Whether a drag with Alt is the tool's own, not a pan.
+    own_alt = False
 
     def __init__(self) -> None:
+        #: Whether the drag began with Alt.
+        self.alternate = False
         self.hovered = ""
         self.focused = ""
         self.taken = ""
