@@ -60,6 +60,13 @@ def draw_hint(painter: QPainter, area: QRect, text: str) -> None:
     draw_text(painter, QRectF(area.right() - width - 7, area.bottom() - height - 7, width, height), text)
 
 
+def draw_badge(painter: QPainter, area: QRect, text: str) -> None:
+    """Draw in the picture's upper right corner what must not be overlooked."""
+    metrics = painter.fontMetrics()
+    width, height = metrics.horizontalAdvance(text) + 20, metrics.height() + 8
+    draw_text(painter, QRectF(area.right() - width - 7, area.top() + 8, width, height), text)
+
+
 def draw_color_bars(painter: QPainter, area: QRect, bars: Sequence[ColorBar]) -> None:
     """Draw colour bars in the picture's lower left corner, beside each other, above the letters' row."""
     line = painter.fontMetrics().height()

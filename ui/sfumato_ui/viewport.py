@@ -35,6 +35,7 @@ from .clip_planes import ClipPlanes
 from .dial import MOVE
 from .editing import Editor
 from .jobs import Picture
+from .shadow_floor import badge_of
 from .subject import is_open, size_of
 from .theme import DARK, PICTURE_GREY
 from .tools import ClipTool, HandleTool, LightTool, PictureView, ShadowBar, ShadowTool
@@ -187,6 +188,10 @@ class Viewport(QWidget):
             )
         if self._picture is not None and scene.geometry:
             overlay.draw_color_bars(painter, self.rect(), color_bars(scene))
+        if self._picture is not None:
+            badge = badge_of(self._picture.scene)
+            if badge:
+                overlay.draw_badge(painter, self.rect(), badge)
         self._paint_tool(painter)
         if self.hint and self._tool == "orbit" and scene.volume is not None:
             overlay.draw_hint(painter, self.rect(), self.hint)

@@ -68,6 +68,7 @@ class Task:
     stack: Stack
     cones: tuple[Cone, ...]
     ambient: float
+    floor: float
     light_step: float
 
 
@@ -109,6 +110,7 @@ def prepare(
         Stack.of(scene, jitter(frame_index)),
         cones(scene, directions),
         float(getattr(scene.technique, "ambient", 0.0)),
+        scene.shadow_floor,
         light_step * scene.volume.min_spacing,
     )
 
@@ -226,10 +228,12 @@ def _integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
 def _lit(task: Task, cone: Cone, p_world: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return the mean over a cone's directions of transmittance times slab term."""
     form = rear_term if cone.rear else front_term
-    total = np.zeros(len(x))
+    total, unshadowed = np.zeros(len(x)), np.zeros(len(x))
     for towards, s in zip(cone.directions, cone.secants, strict=True):
-        total += np.exp(-optical_depth(task, p_world, towards)) * form(x, v, s)
-    return total / len(cone.directions)
+        term = form(x, v, s)
+        total += np.exp(-optical_depth(task, p_world, towards)) * term
+        unshadowed += term
+    return np.maximum(total, task.floor * unshadowed) / len(cone.directions)
 
 
 def optical_depth(task: Task, p_world: np.ndarray, towards: np.ndarray) -> np.ndarray:

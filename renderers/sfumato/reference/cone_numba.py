@@ -41,6 +41,7 @@ def integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
             rear,
             np.array([cone.facing for cone in task.cones]),
             task.ambient,
+            task.floor,
             task.light_step,
             medium.voxels,
             np.ascontiguousarray(medium.index_from_world[:3]),
@@ -174,6 +175,7 @@ def _pixels(  # type: ignore[no-untyped-def]
     rear,
     facing,
     ambient,
+    floor,
     step,
     voxels,
     matrix,
@@ -205,7 +207,7 @@ def _pixels(  # type: ignore[no-untyped-def]
             light[:] = 0.0
             for lamp in range(directions.shape[0]):
                 at = pb if rear[lamp] else pa
-                total = 0.0
+                total = unshadowed = 0.0
                 for k in range(directions.shape[1]):
                     w = directions[lamp, k]
                     depth = _optical_depth(
@@ -223,8 +225,11 @@ def _pixels(  # type: ignore[no-untyped-def]
                         w[1],
                         w[2],
                     )
+                    term = _slab_term(x, v, secants[lamp, k], rear[lamp])
+                    unshadowed += term
                     if depth < DARK:
-                        total += math.exp(-depth) * _slab_term(x, v, secants[lamp, k], rear[lamp])
+                        total += math.exp(-depth) * term
+                total = max(total, floor * unshadowed)
                 light += radiance[lamp] * (
                     (1 - ambient) * total / directions.shape[1] + ambient * facing[lamp] * alpha
                 )

@@ -61,6 +61,8 @@ class Scene:
         Linear, straight alpha.
     exposure : float
         In stops: linear values are multiplied by 2 ** exposure before the tone map.
+    shadow_floor : float
+        f in [0, 1): a lamp's visibility V counts as max(V, f) wherever it falls; 0 leaves shadows as they are.
     frames : int
         Jittered frames that `render` accumulates.
     clip, crop
@@ -105,6 +107,18 @@ class Scene:
     frames: Annotated[
         int, Param("Jittered frames accumulated in a still picture", label="Frames", ge=1, le=1024)
     ] = 1
+    shadow_floor: Annotated[
+        float,
+        Param(
+            "Least share of a lamp's light that its shadow leaves: no shadow hides what lies in it",
+            label="Shadow floor",
+            ge=0,
+            lt=1,
+            soft=(0, 0.6),
+            tab="light",
+            level="more",
+        ),
+    ] = 0.0
     clip: tuple[ClipPlane, ...] = ()
     crop: CropBox = field(default_factory=CropBox)
     geometry: tuple[Geometry, ...] = ()

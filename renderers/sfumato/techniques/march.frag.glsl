@@ -24,6 +24,7 @@ uniform int u_first, u_last;     // segments of this pass
 uniform float u_near;            // mm
 uniform float u_far;             // mm
 uniform float u_ambient, u_diffuse, u_specular, u_shininess;
+uniform float u_shadow_floor;    // least visibility of a lamp
 uniform float u_edge;            // gradient (normalised value per mm) at which a highlight has half its strength
 
 #if SHADING == 1 || SHADING == 3
@@ -86,6 +87,7 @@ vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float dept
     float visible[4];
     visibilities(i, front, back, visible);
     for (int l = 0; l < LIGHTS; ++l) {
+        visible[l] = max(visible[l], u_shadow_floor);
         // Ambient is what no shadow takes away, not even a sample's own; a fully lit surface stays as bright as it is.
         result += u_light_color[l] * color * mix(visible[l] * returned[l], alpha, u_ambient);
 #if SPECULAR

@@ -13,12 +13,13 @@ from sfumato.techniques import techniques
 from .. import light_moves
 from ..dial import MOVE, SOFTEN, LightDial
 from ..editing import Editor
-from ..generated import ChoiceBox, ParamControl, controls_for, labelled, tooltip_of
+from ..generated import ChoiceBox, ParamControl, bind_slider, controls_for, labelled, slider_for, tooltip_of
 from ..lamp_place import LampForm, LampMore, LampPlace, radius_slider, show_radius
 from ..lamp_tools import LampTools
 from ..lamps import LampRow
 from ..rigs_row import RigsRow
 from ..section import Section
+from ..shadow_floor import no_floor
 from ..sliders import LabelledSlider
 from ..thumbnails import Thumbnails
 from .page import Page
@@ -51,6 +52,8 @@ class LightPage(Page):
         self.note.setProperty("muted", True)
         self.note.setWordWrap(True)
         self.attached = self._attached_menu()
+        self.floor = slider_for(fields_of(Scene)["shadow_floor"])
+        bind_slider(self.floor, editor, "shadow_floor", "the shadow floor")
         # All that a first look needs fits into a window of 1280 x 720.
         self.column.setSpacing(4)
         self.controls: list[ParamControl] = []
@@ -176,6 +179,8 @@ class LightPage(Page):
             self._show_technique(new)
         elif (old.volume is None) != (new.volume is None):
             self._show_note(new)
+        if old.shadow_floor != new.shadow_floor:
+            self._show_floor(new)
 
     def _show_light(self) -> None:
         light = self._editor.light
@@ -220,7 +225,17 @@ class LightPage(Page):
             self._show_light()
         for control in self.controls:
             control.show_value()
+        self._show_floor(scene)
         self._show_note(scene)
+
+    def _show_floor(self, scene: Scene) -> None:
+        """Show the least light that shadows leave, or why the technique has no such thing."""
+        reason = no_floor(scene)
+        param = fields_of(Scene)["shadow_floor"].param
+        assert param is not None
+        self.floor.setEnabled(not reason)
+        self.floor.setToolTip(reason or tooltip_of(param))
+        self.floor.set_number(scene.shadow_floor)
 
     def _show_note(self, scene: Scene) -> None:
         """Say what the technique leaves out of the lamps."""
@@ -248,6 +263,7 @@ class LightPage(Page):
         rest = controls_for(fields, "more", self._editor, "technique.")
         self.attached.setParent(self)
         self.lamp_more.setParent(self)
+        self.floor.setParent(self)
         self.own.clear()
         self.more.clear()
         self.own.set_title(title)
@@ -258,6 +274,7 @@ class LightPage(Page):
         self.more.add(labelled("Lamp fixed to", self.attached))
         for control in rest:
             self.more.add(control)
+        self.more.add(self.floor)
         self.controls = essential + rest
         self.rebuilt.emit()
 

@@ -77,7 +77,8 @@ class ShadowBar(QFrame):
 
     def fit(self) -> None:
         """Give the words the width that they need, as far as the picture has it."""
-        room = self.parentWidget().width() - BESIDE if self.parentWidget() is not None else WIDEST
+        parent = self.parentWidget()
+        room = WIDEST if parent is None else parent.width() - BESIDE
         needed = self.words.fontMetrics().horizontalAdvance(self.words.text()) + 4
         self.words.setFixedWidth(max(60, min(WIDEST, room, needed)))
 

@@ -22,6 +22,8 @@ uniform float u_first;               // first section, in cells along the domina
 uniform float u_growth;              // relative growth of the sections
 uniform float u_strength;
 
+uniform float u_shadow_floor;        // least share of what arrives that a shadow leaves
+
 layout(location = 0) out float o_light;
 
 const int MOST = 160;                // sections of a cone
@@ -127,7 +129,7 @@ void main() {
     if (u_beam_edge.x < u_beam_edge.y) arriving *= smoothstep(u_beam_edge.x, u_beam_edge.y, dot(-axis, u_beam));
 
     // 2. What is in the way, cone by cone.
-    float sum = 0.0, weights = 0.0;
+    float sum = 0.0, open = 0.0, weights = 0.0;
 #if POINTS
     for (int k = 0; k < CONES; ++k) {
         vec3 along = u_place[k] - p;
@@ -139,6 +141,7 @@ void main() {
         // A rectangle seen from the side is narrow, and what lies behind it is not in the way.
         float tangent = u_tangent >= 0.0 ? u_tangent : u_part * max(weight, 0.1) / distance_mm;
         sum += weight * through(cell, along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k]);
+        open += weight;
     }
 #else
     float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / away;
@@ -146,8 +149,9 @@ void main() {
     for (int k = 0; k < CONES; ++k) {
         vec3 along = normalize(axis + sides * (u_disc[k] * tangent));
         sum += through(cell, along, tangent * u_part, away, ACROSS_A_CELL * u_disc[k]);
+        open += 1.0;
         weights += 1.0;
     }
 #endif
-    o_light = arriving * sum / weights;
+    o_light = arriving * max(sum, u_shadow_floor * open) / weights;
 }

@@ -16,6 +16,7 @@ TECHNIQUES = (
         RaycastParams,
         "..techniques.marcher:MarchPainter",
         source="Max1995",
+        floor=False,
         lit=False,
         options={"slices": False, "phong": False},
     ),
@@ -26,6 +27,7 @@ TECHNIQUES = (
         RaycastPhongParams,
         "..techniques.marcher:MarchPainter",
         source="Levoy1988",
+        floor=False,
         options={"slices": False, "phong": True},
     ),
 )

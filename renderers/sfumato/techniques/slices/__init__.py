@@ -17,6 +17,7 @@ TECHNIQUES = (
         SlicesParams,
         "..techniques.marcher:MarchPainter",
         source="Soltesova2010",
+        floor=False,
         lit=False,
         options={"slices": True, "phong": False},
     ),
@@ -27,6 +28,7 @@ TECHNIQUES = (
         SlicesPhongParams,
         "..techniques.marcher:MarchPainter",
         source="Soltesova2010",
+        floor=False,
         options={"slices": True, "phong": True},
     ),
 )
