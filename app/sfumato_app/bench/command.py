@@ -11,6 +11,7 @@ from pathlib import Path
 import sfumato
 
 from . import machine
+from .blocks import measure_blocks
 from .drag import measure_drag
 from .growth import BASE, FACTORS, QUICK_BASE, QUICK_FACTORS, measure_growth, save_growth_plot
 from .measure import run, warm_up
@@ -49,6 +50,8 @@ def main(argv: Sequence[str]) -> int:
             return _growth(options)
         if options.drag:
             return _drag(options)
+        if options.blocks:
+            return _blocks(options)
         report = measure(chosen, options.rounds, sys.stderr.isatty())
         print(report.text())
         _write(report, options)
@@ -112,6 +115,16 @@ def _drag(options: argparse.Namespace) -> int:
     return 0
 
 
+def _blocks(options: argparse.Namespace) -> int:
+    """Measure local occlusion over blocks, print it, and write what was asked for."""
+    tell = _tell if sys.stderr.isatty() else _say_nothing
+    report = measure_blocks(Setting(size=options.size, viewport=options.viewport), tell)
+    print(report.text())
+    if options.json is not None:
+        options.json.write_text(json.dumps(report.to_json(), indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="sfumato bench",
@@ -137,6 +150,12 @@ def _parser() -> argparse.ArgumentParser:
         "--drag",
         action="store_true",
         help="the whole step of a drag in a real window: slider event to shown picture (needs a display)",
+    )
+    parser.add_argument(
+        "--blocks",
+        action="store_true",
+        help="local occlusion: time of a direction and error of the picture against data reduction and "
+        "number of directions",
     )
     parser.add_argument(
         "--technique", default="cone", metavar="ID", help="the technique of --drag (default cone)"

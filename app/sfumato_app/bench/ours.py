@@ -106,6 +106,18 @@ class MovingLight(Ours):
         )
 
 
+class Retouched(Ours):
+    """One of our techniques while somebody edits the transfer function: the first picture after each change."""
+
+    def next_scene(self) -> sfumato.Scene:
+        """Return the scene with its densest tissue a trifle less opaque."""
+        transfer = self._scene.transfer
+        assert transfer is not None
+        last = len(transfer.points) - 1
+        opacity = transfer.points[last].opacity - TRIFLE * (1 + next(_trifles))
+        return self._scene.with_({f"transfer.points.{last}.opacity": opacity})
+
+
 #: Counts the frames of all moving lights: no two contenders' lamps stand at one place either.
 _trifles = itertools.count()
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import sfumato
 from sfumato.renderer import DRAG, FULL, Quality
+from sfumato.techniques.local_occlusion.passes import LEAST
 
 from .contender import Contender
 from .extinction import Building, Neighbourhood
-from .ours import SWING, MovingLight, Ours
+from .ours import SWING, MovingLight, Ours, Retouched
 from .setting import Setting
 
 if TYPE_CHECKING:
@@ -102,6 +103,8 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("cone-still", "... its light kept from the frame before", _ours("cone")),
         ("cone-turning", "... its light turning", _moving("cone", "rotation")),
         ("cone-drag", "... at drag quality, its light turning", _moving("cone", "rotation", quality=DRAG)),
+        ("local-occlusion", "local occlusion, its light kept", _local()),
+        ("local-occlusion-retouched", "... the first picture after a change of colours", _local(Retouched)),
         # Slope shading takes a gradient a sample, as Phong does; without it light is one look-up.
         ("extinction", "extinction-based light, slopes shaded, light at rest", _extinction()),
         ("extinction-still", "... without slopes", _extinction(facing=0.0)),
@@ -117,6 +120,12 @@ def rows(setting: Setting) -> tuple[Row, ...]:
 
 def _ours(technique: str) -> Callable[[Stage, Setting], Contender]:
     return lambda stage, setting: Ours(stage.renderer, setting, technique)
+
+
+def _local(kind: type[Ours] = Ours) -> Callable[[Stage, Setting], Contender]:
+    changes = {"technique.lamps": "off", "technique.directions": LEAST}
+    quality = replace(FULL, progressive=True)
+    return lambda stage, setting: kind(stage.renderer, setting, "local-occlusion", quality, changes)
 
 
 def _moving(

@@ -29,7 +29,7 @@ class VolumeTexture:
         Smallest and largest normalised value that interpolation can meet in each block.
     """
 
-    texture: Any
+    texture: Any  # None if the voxels are not on the GPU
     domain: tuple[float, float]
     low: np.ndarray
     high: np.ndarray
@@ -37,7 +37,16 @@ class VolumeTexture:
 
     def release(self) -> None:
         """Free the texture."""
-        self.texture.release()
+        if self.texture is not None:
+            self.texture.release()
+
+
+def survey_volume(volume: Volume) -> VolumeTexture:
+    """Return what is known of a volume without its voxels on the GPU."""
+    voxels, domain = normalised(volume)
+    scale = np.float32(1 / np.iinfo(voxels.dtype).max)
+    low, high = block_extremes(voxels)
+    return VolumeTexture(None, domain, low * scale, high * scale, 0)
 
 
 def upload_volume(device: Device, volume: Volume) -> VolumeTexture:

@@ -7,6 +7,7 @@
 // LITERAL    1: the published occlusion forms, which light a sample by its opacity, not by the slab term
 // SPECULAR   the swept lights have gradient-based highlights
 // LOCAL      the lamps' light is combined with that of each point's neighbourhood. 0: not, 1: product, 2: mix
+// ADAPTIVE   longer steps where blocks are coarse
 // EMISSION   tissue gives off light
 #include "ray"
 #include "volume"
@@ -141,12 +142,19 @@ void main() {
         known = true;
         // 2. Through the block, one segment at least.
         float leave = min(z + max(block_run(a, b, z), 1e-3 * dz), range.y);
+#if ADAPTIVE
+        int most = samples_as_one(a + b * (0.5 * (z + leave)));
+#endif
         while (sum.a < OPAQUE && i < u_last && z < leave) {
+            int taken = 1;
             float z_next = z, value_next = value, magnitude = 0.0;
             vec4 mean = vec4(0.0);
             // 3. On to the next segment in which something is visible.
-            for (; i < u_last && z < leave; ++i) {
-                z_next = min(z0 + float(i + 1) * dz, range.y);
+            for (; i < u_last && z < leave; i += taken) {
+#if ADAPTIVE
+                taken = clamp(int(ceil((leave - z) / dz)), 1, most);
+#endif
+                z_next = min(z0 + float(i + taken) * dz, range.y);
                 value_next = volume_value(a + b * z_next);
 #ifdef TRANSFER_2D
                 magnitude = length(volume_gradient(a + b * (0.5 * (z + z_next))));
@@ -183,7 +191,7 @@ void main() {
             sum += (1.0 - sum.a) * vec4(c, alpha);
             z = z_next;
             value = value_next;
-            ++i;
+            i += taken;
         }
     }
     if (sum.a >= OPAQUE) sum /= sum.a;

@@ -12,13 +12,13 @@ import math
 import time
 from collections.abc import Generator, Hashable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..gpu import Device, Program, Target, Variants
 from ..gpu.tables import TransferTables, make_tables, occupied_blocks
-from ..gpu.volume_texture import EmptySpace, VolumeTexture, map_empty_space, upload_volume
+from ..gpu.volume_texture import EmptySpace, VolumeTexture, map_empty_space, survey_volume, upload_volume
 from ..scene import nearest_possible_tilt
 from .frame import Frame
 from .stack import Stack, View, clip_uniforms
@@ -34,7 +34,10 @@ _FAR = 1e30
 
 @dataclass
 class Material:
-    """What the GPU holds of a scene's volume and transfer function."""
+    """What the GPU holds of a scene's volume and transfer function.
+
+    With ``packed`` that takes the volume's place, for volumes too large for the device.
+    """
 
     volume: VolumeTexture
     tables: TransferTables
@@ -42,12 +45,28 @@ class Material:
     clipped: bool
     #: Equal for materials that stop light alike, whatever their colours.
     opacity_key: Hashable
+    packed: Packed | None = None
 
 
-def prepare_material(frame: Frame) -> Material:
-    """Return the volume and transfer function on the GPU, uploading what is not there yet."""
+class Packed(Protocol):
+    """A volume in another form than its voxels in one texture."""
+
+    def bind(self, program: Program, frame: Frame) -> None:
+        """Set what shaders need to read it."""
+        ...
+
+
+def prepare_material(frame: Frame, *, whole: bool = True) -> Material:
+    """Return the volume and transfer function on the GPU, uploading what is not there yet.
+
+    Without the `whole` volume its voxels stay where they are, and something `packed` has to take their place.
+    """
     store, device, volume, transfer = frame.device.store, frame.device, frame.volume, frame.transfer
-    texture = store.get(("volume", volume.key), lambda: upload_volume(device, volume), lambda t: t.size)
+    texture = store.get(
+        ("volume" if whole else "extremes", volume.key),
+        lambda: upload_volume(device, volume) if whole else survey_volume(volume),
+        lambda t: t.size,
+    )
     key = (volume.key, transfer)
     tables = store.get(
         ("transfer function", *key), lambda: make_tables(device, volume, texture, transfer), lambda t: t.size
@@ -72,14 +91,19 @@ def _opacity_key(frame: Frame) -> Hashable:
 def material_defines(material: Material) -> tuple[tuple[str, int], ...]:
     """Return the defines of a material's shader variant."""
     two = (("TRANSFER_2D", 1),) if material.tables.max_gradient > 0 else ()
-    return (("CLIPS", int(material.clipped)), *two)
+    packed = (("PACKED", 1),) if material.packed is not None else ()
+    return (("CLIPS", int(material.clipped)), *two, *packed)
 
 
 def bind_material(program: Program, material: Material, frame: Frame) -> None:
     """Set what every shader needs to sample, classify, clip and skip."""
     volume, tables = frame.volume, material.tables
+    if material.packed is None:
+        program.bind(u_volume=material.volume.texture)
+    else:
+        material.packed.bind(program, frame)
     program.bind(
-        u_volume=material.volume.texture, u_distance=material.empty.texture,
+        u_distance=material.empty.texture,
         u_integral=tables.color, u_emission=tables.emission, u_extinction=tables.extinction,
         u_table2d=tables.color, u_emission2d=tables.emission,
     )  # fmt: skip
@@ -133,6 +157,7 @@ class Variant:
     facing: bool = False
     local: int = 0
     joined: bool = False
+    adaptive: bool = False
 
 
 class Marcher:
@@ -150,6 +175,7 @@ class Marcher:
             ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
             ("NEAR", variant.near), ("SHADING", variant.shading), ("SPECULAR", int(variant.specular)),
             ("FACING", int(variant.facing)), ("LOCAL", variant.local), ("JOINED", int(variant.joined)),
+            ("ADAPTIVE", int(variant.adaptive)),
             ("EMISSION", int(material.tables.emits)),
             *material_defines(material),
         )  # fmt: skip

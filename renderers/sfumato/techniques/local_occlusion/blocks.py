@@ -13,15 +13,19 @@ from ..frame import Frame
 from ..marcher import Material
 from ..stack import clip_uniforms
 from .levels import choose, errors, looks
-from .packing import NONE, Packing, pack, packed_voxels
+from .packing import HIDDEN, NONE, Packing, pack, packed_voxels
 from .pyramid import EDGE, Pyramid, build_pyramid
 
 #: Width of the texture that holds the list of blocks.
 LIST_WIDTH = 1024
-#: Voxels up to which the automatic data reduction leaves every block that is worth it at full resolution.
-AUTOMATIC = 4 << 20
+#: Automatic data reduction of volumes of up to so many voxels; larger ones are reduced more.
+REDUCTION, ORDINARY = 8.5, 4 << 20
+#: Texels that there may be in any case.
+FEW = 1 << 18
 #: Part of a device's budget that packed values and light may take.
 SHARE = 0.4
+#: Part of it that the volume itself may take.
+WHOLE_SHARE = 0.5
 #: Bytes of a packed texel: its value and its light.
 TEXEL_BYTES = 2 + 16
 
@@ -74,7 +78,15 @@ _DTYPE = {1: "f1", 2: "nu2"}
 def blocks_key(frame: Frame) -> tuple[Hashable, ...]:
     """Return what the blocks of a frame depend on."""
     scene, params = frame.scene, frame.params
-    return frame.volume.key, frame.transfer, scene.clip, scene.crop, params.reduction, params.coarsest
+    whole = is_whole(frame)
+    return frame.volume.key, frame.transfer, scene.clip, scene.crop, params.reduction, params.coarsest, whole
+
+
+def is_whole(frame: Frame) -> bool:
+    """Tell whether the volume itself can be on the device; if not, its blocks are all there is of it."""
+    data, device = frame.volume.data, frame.device
+    wanted = data.size * (1 if data.dtype == np.uint8 else 2)
+    return wanted <= WHOLE_SHARE * device.store.budget and max(frame.volume.dims) <= device.max_texture_3d
 
 
 def prepare_blocks(frame: Frame, material: Material) -> Blocks:
@@ -94,14 +106,20 @@ def prepare_blocks(frame: Frame, material: Material) -> Blocks:
 def lay_out(frame: Frame, material: Material, pyramid: Pyramid) -> Packing:
     """Choose the blocks' levels by their significance and lay them out."""
     shown = shown_blocks(frame, pyramid, material.tables.visible)
-    levels = np.full(pyramid.grid, NONE, dtype=np.uint8)
+    # Of what is empty one texel is kept where the volume has no other form.
+    levels = np.full(pyramid.grid, NONE if is_whole(frame) else HIDDEN, dtype=np.uint8)
     wanted = np.flatnonzero(shown)
     voxels = pyramid.levels[-1].size
-    reduction = frame.params.reduction or max(1.0, (voxels / AUTOMATIC) ** (2 / 3))
-    texels = min(voxels / reduction, SHARE * frame.device.store.budget / TEXEL_BYTES)
+    wished = voxels / frame.params.reduction if frame.params.reduction else automatic_texels(voxels)
+    texels = min(wished, SHARE * frame.device.store.budget / TEXEL_BYTES)
     error = errors(pyramid, wanted, looks(frame.transfer, material.volume.domain))
     levels.ravel()[wanted] = choose(error, texels, frame.params.coarsest)
     return pack(levels, min(2048, frame.device.max_texture_3d))
+
+
+def automatic_texels(voxels: int) -> float:
+    """Return how many texels stand for a volume of so many voxels, unless the user says so."""
+    return max(FEW, voxels / REDUCTION / max(1.0, voxels / ORDINARY) ** (2 / 3))
 
 
 def shown_blocks(frame: Frame, pyramid: Pyramid, visible: np.ndarray) -> np.ndarray:

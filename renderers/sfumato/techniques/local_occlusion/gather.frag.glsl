@@ -4,12 +4,9 @@
 #include "volume"
 #include "clip"
 #include "transfer"
-#define JOINED 0
-#include "blocks"
 
 uniform usampler3D u_bricks;     // reverse index: per brick of 16^3 texels its level, and where its blocks begin in the list
 uniform usampler2D u_list;       // place (xyz) of each block in the volume; w = 0: no block
-uniform sampler3D u_packed;      // normalised values
 uniform int u_layer;
 uniform vec3 u_ray;              // the direction in texture coordinates, per mm
 uniform float u_offset, u_radius;  // mm
@@ -26,7 +23,7 @@ const int EDGE = 16, FINEST = 4, LIST_WIDTH = 1024;
 float matter(vec3 t, out vec3 shining) {
     vec3 q = t * u_blocks_per_unit;
     uvec4 block = block_at(ivec3(floor(q)));
-    float there = float(level_of(block) != NO_BLOCK) * kept_point(t);
+    float there = float(is_shown(block)) * kept_point(t);
     shining = vec3(0.0);
     if (there == 0.0) return 0.0;
     float value = textureLod(u_packed, packed_place(block, q - floor(q)), 0.0).r, gradient = 0.0;
@@ -46,7 +43,7 @@ void main() {
     // 1. Which block is this, and where in the volume does the texel lie?
     ivec3 at = ivec3(ivec2(gl_FragCoord.xy), u_layer);
     uvec2 brick = texelFetch(u_bricks, at / EDGE, 0).rg;
-    if (brick.r == NO_BLOCK) discard;
+    if (brick.r == 255u) discard;
     int level = int(brick.r), res = 1 << level, across = EDGE >> level;
     ivec3 local = at % EDGE, sub = local / res;
     int entry = int(brick.g) + sub.x + across * (sub.y + across * sub.z);

@@ -102,7 +102,7 @@ class Gatherer:
     def gather(
         self, frame: Frame, material: Material, blocks: Blocks, light: LightMap, least: int, seconds: float
     ) -> Iterator[float]:
-        """Add directions, yielding the share done of all, after each slab.
+        """Add directions, one slab at least, yielding the share done of all after each slab.
 
         Parameters
         ----------
@@ -115,9 +115,11 @@ class Gatherer:
         target = LayerTarget(self.device, layers=1, size=light.texture.size[:2])
         began = time.perf_counter()
         try:
-            while not light.complete and (light.done < least or time.perf_counter() - began < seconds):
+            while not light.complete:
                 self._add_slab(frame, program, target, light)
                 yield light.share
+                if light.done >= least and time.perf_counter() - began >= seconds:
+                    break
         finally:
             target.release()
 

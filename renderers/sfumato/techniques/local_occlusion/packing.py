@@ -18,6 +18,8 @@ from .pyramid import EDGE, FINEST, LEVELS, Pyramid, by_blocks
 
 #: Level of blocks that are empty, and of bricks that hold nothing.
 NONE = 255
+#: Of blocks that are empty, but of which a texel (level 0) is kept, since there is no other form of the volume.
+HIDDEN = 64
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class Packing:
     ----------
     index : ndarray, uint16, shape (bz, by, bx, 4)
         Of each block its first texel (x, y, z) in the packed texture; in the low byte of the fourth its level
-        (`NONE` if it is empty), in the high byte the lowest level of it and its neighbours.
+        (`NONE` or `HIDDEN` if it is empty), in the high byte the lowest level of it and its neighbours.
     bricks : ndarray, uint32, shape (nz, ny, nx, 2)
         Of each brick its level, and where its blocks begin in `blocks`.
     blocks : ndarray, uint16, shape (n, 4)
@@ -53,13 +55,14 @@ class Packing:
 
     @property
     def levels(self) -> np.ndarray:
-        """Levels of the blocks, `NONE` where empty; shape (bz, by, bx)."""
+        """Levels of the blocks, `NONE` or `HIDDEN` where empty; shape (bz, by, bx)."""
         return self.index[..., 3] & 255
 
     @property
     def texels(self) -> int:
         """Texels that hold something."""
-        return int(sum((self.levels == level).sum() * TEXELS[level] for level in range(LEVELS)))
+        held = np.where(self.levels == HIDDEN, 0, self.levels)
+        return int(sum((held == level).sum() * TEXELS[level] for level in range(LEVELS)))
 
     @property
     def reduction(self) -> float:
@@ -68,8 +71,9 @@ class Packing:
 
 
 def pack(levels: np.ndarray, longest: int = 2048) -> Packing:
-    """Lay out blocks of given levels (bz, by, bx; `NONE` where empty) in a texture, at most `longest` on a side."""
-    counts = [int((levels == level).sum()) for level in range(LEVELS)]
+    """Lay out blocks of given levels (bz, by, bx; `NONE` or `HIDDEN` where empty), `longest` texels a side at most."""
+    held = np.where(levels == HIDDEN, 0, levels)
+    counts = [int((held == level).sum()) for level in range(LEVELS)]
     number = [-(-count // 8 ** (FINEST - level)) for level, count in enumerate(counts)]
     shape = _cube(sum(number), longest // EDGE)
     bricks = np.zeros((int(np.prod(shape)), 2), dtype=np.uint32)
@@ -79,7 +83,7 @@ def pack(levels: np.ndarray, longest: int = 2048) -> Packing:
     lists, brick, first = [], 0, 0
     for level in reversed(range(LEVELS)):
         per_brick, edge = 8 ** (FINEST - level), 1 << (FINEST - level)
-        at = np.argwhere(levels == level)
+        at = np.argwhere(held == level)
         order = np.arange(len(at))
         entries = np.zeros((number[level] * per_brick, 4), dtype=np.uint16)
         entries[: len(at), :3] = at[:, ::-1]

@@ -207,3 +207,14 @@ class LocalOcclusionParams(TechniqueParams):
             level="more",
         ),
     ] = True
+    adaptive: Annotated[
+        bool,
+        Param(
+            "Longer steps of the view rays where blocks are coarse",
+            label="Adaptive steps",
+            source="Hernell2007, 4.2",
+            stale="program",
+            tab="light",
+            level="more",
+        ),
+    ] = True

@@ -23,7 +23,7 @@ from ..marcher import (
     set_view,
     visible_box,
 )
-from .blocks import Blocks, prepare_blocks
+from .blocks import Blocks, is_whole, prepare_blocks
 from .gather import Gatherer, LightMap
 
 #: Directions without which no picture is shown.
@@ -46,13 +46,15 @@ class LocalOcclusionPainter:
 
     def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
-        material = prepare_material(frame)
+        whole = is_whole(frame)
+        material = prepare_material(frame, whole=whole)
         box = visible_box(frame, material)
         if is_empty(box):
             self.marcher.clear(frame)
             yield 1.0
             return
         blocks = prepare_blocks(frame, material)
+        material = material if whole else replace(material, packed=blocks)
         yield 0.0
         light = self.gatherer.light_map(frame, material, blocks)
         least, seconds = (LEAST, max(SECONDS, self._drawing)) if frame.quality.progressive else (1 << 20, 0.0)
@@ -74,12 +76,15 @@ class LocalOcclusionPainter:
         """Set up the ray caster; sweeps lamps that cast shadows, if they have to be."""
         params, active = frame.params, len(frame.scene.active_lights)
         mode = PRODUCT if params.mode == "product" else MIX
-        variant, lamps = Variant(shading=LOCAL, local=mode, joined=params.joined), None
+        variant = Variant(shading=LOCAL, local=mode, joined=params.joined, adaptive=params.adaptive)
+        lamps = None
         if params.lamps == "diffuse":
             variant = replace(variant, lights=active)
         elif params.lamps == "shadows" and active:
             lamps = yield from self.shadows.prepare(frame, material, 0.5)
-            variant = replace(variant, slices=True, shading=VOLUMES, lights=active, near=lamps.ways.samples)
+            variant = replace(
+                variant, slices=True, shading=VOLUMES, lights=active, near=lamps.ways.samples, adaptive=False
+            )
         program = self.marcher.program(variant, shown_emission(frame, material))
         bind_material(program, material, frame)
         self._bind_lamps(program, frame, lamps)
