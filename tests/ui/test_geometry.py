@@ -154,3 +154,85 @@ def test_several_are_listed_and_removed(window, shapes, qtbot):
     assert not shapes.isVisible()
     window.editor.undo()
     assert shapes.isVisible()
+
+
+# -- bad input, told with counts -------------------------------------------------------------------
+def trk(path, lines):
+    from nibabel.streamlines import save
+
+    save(Tractogram([np.asarray(line, np.float32) for line in lines], affine_to_rasmm=np.eye(4)), str(path))
+    return path
+
+
+def vtp(path, lines):
+    import pyvista
+
+    points = np.concatenate([np.asarray(line, float) for line in lines])
+    cells, start = [], 0
+    for line in lines:
+        cells += [len(line), *range(start, start + len(line))]
+        start += len(line)
+    pyvista.PolyData(points, lines=cells).save(path)
+    return path
+
+
+GOOD = [[-4, -4, 4], [-30, -30, 30]]
+
+
+@pytest.mark.parametrize(
+    ("make", "lines", "told"),
+    [
+        (trk, [GOOD, [[500, 0, 0], [510, 0, 0]]], "1 line of 2 leave the volume, 1 of them lie outside"),
+        (trk, [[[500, 0, 0], [510, 0, 0]]], "they may belong to another scan"),
+        (trk, [GOOD, [[-5, -5, 5]]], "1 line of one point left out"),
+        (
+            trk,
+            [GOOD, [[-5, -5, 5], [np.nan] * 3, [-6, -6, 6], [-7, -7, 7]]],
+            "1 line with 1 point that are NaN",
+        ),
+        (vtp, [GOOD], "does not name its space"),
+    ],
+    ids=["outside", "another scan", "one point", "NaN", "no space"],
+)
+def test_what_is_wrong_is_counted_and_the_rest_shown(window, tmp_path, qtbot, make, lines, told):
+    path = make(tmp_path / f"odd.{make.__name__}", lines)
+    drop(window, path)
+    qtbot.waitUntil(lambda: bool(window.editor.scene.geometry), timeout=60_000)
+    assert told in window.messages.text
+    assert shown(window).shape.count >= 1
+
+
+def test_tracts_without_a_line_are_refused(window, tmp_path, qtbot):
+    drop(window, trk(tmp_path / "empty.trk", []))
+    qtbot.waitUntil(lambda: window.messages.kind == "error", timeout=60_000)
+    assert "empty.trk" in window.messages.text
+    assert window.editor.scene.geometry == ()
+
+
+def test_masked_cells_of_a_field_are_counted(make_window, tmp_path, qtbot):
+    import pyvista
+
+    grid = pyvista.ImageData(dimensions=(9, 9, 9), spacing=(2, 2, 2))
+    grid.point_data["speed of it"] = np.linspace(0, 100, grid.n_points)
+    vectors = np.tile([1.0, 0.0, 0.0], (grid.n_points, 1))
+    vectors[:10] = np.nan
+    grid.point_data["flow"] = vectors
+    grid.save(tmp_path / "flow.vti")
+    window = make_window()
+    window.open(str(tmp_path / "flow.vti"))
+    qtbot.waitUntil(lambda: bool(window.editor.scene.geometry), timeout=60_000)
+    assert "10 vectors of 729 are masked or NaN" in window.messages.text
+
+
+def test_a_field_at_rest_opens_without_streamlines(make_window, tmp_path, qtbot):
+    import pyvista
+
+    grid = pyvista.ImageData(dimensions=(9, 9, 9))
+    grid.point_data["value"] = np.linspace(0, 100, grid.n_points)
+    grid.point_data["flow"] = np.zeros((grid.n_points, 3))
+    grid.save(tmp_path / "rest.vti")
+    window = make_window()
+    window.open(str(tmp_path / "rest.vti"))
+    qtbot.waitUntil(lambda: window.editor.scene.volume is not None, timeout=60_000)
+    assert window.editor.scene.geometry == ()
+    assert "No streamlines" in window.messages.text

@@ -49,7 +49,8 @@ def both(window: MainWindow, qtbot: Any) -> Iterator[MainWindow]:
 def wait_for_stage(window: MainWindow, qtbot: Any) -> Any:
     def there() -> bool:
         panel = window.vtk.panel
-        return panel is not None and panel.stage is not None and panel.stage.view.isValid()
+        stage = panel.stage if panel is not None else None
+        return stage is not None and stage.view.isValid() and not stage.busy
 
     qtbot.waitUntil(there, timeout=240_000)  # the first import of VTK
     qtbot.wait(60)
@@ -155,7 +156,7 @@ def test_moves_in_the_vtk_view_move_the_lit_view(both: MainWindow, hand: Any, qt
 
 # -- picking and regions ---------------------------------------------------------------------------
 def click_at(window: MainWindow, qtbot: Any, point: tuple[float, float, float]) -> None:
-    stage = window.vtk.panel.stage  # type: ignore[union-attr]
+    stage = wait_for_stage(window, qtbot)
     x, y = places_in_vtk(stage, np.array([point]))[0]
     qtbot.mouseClick(stage.view, LEFT, Qt.KeyboardModifier.NoModifier, QPointF(x, y).toPoint())
 
@@ -220,30 +221,82 @@ def flow(tmp_path: Any) -> str:
     return str(tmp_path / "flow.vti")
 
 
+def test_vectors_are_seen_without_a_click(make_window: Any, flow: str, qtbot: Any) -> None:
+    window = make_window(size=(1000, 600))
+    window.open(flow)
+    qtbot.waitUntil(lambda: window.editor.scene.volume is not None, timeout=60_000)
+    (lines,) = window.editor.scene.geometry
+    assert lines.kind == "streamlines"
+    assert lines.shape.count > 150
+    assert not window.editor.document.modified, "nothing to save, nothing to undo"
+    controls = window.view_page.shapes.tracing
+    assert controls.direction.currentData() == "both"
+    choose_in(controls.direction, "forward")
+    controls.sliders["length"].number.setValue(10)
+    qtbot.waitUntil(lambda: window.editor.scene.geometry[0] is not lines, timeout=60_000)
+    (shorter,) = window.editor.scene.geometry
+    assert shorter.tracing.direction == "forward"
+    assert shorter.shape.lengths.max() < 12 < lines.shape.lengths.max()
+    assert window.editor.document.undo_label == "Trace streamlines"
+
+
+def choose_in(box: Any, data: str) -> None:
+    box.setCurrentIndex(box.findData(data))
+    box.activated.emit(box.currentIndex())
+
+
+def test_single_seeds_and_seeds_on_a_surface(make_window: Any, flow: str, tmp_path: Any, qtbot: Any) -> None:
+    import pyvista
+
+    pyvista.Sphere(radius=6, center=(20, 20, 20)).save(tmp_path / "ball.stl")
+    window = make_window(size=(1000, 600))
+    window.files.open_all([flow, str(tmp_path / "ball.stl")])
+    qtbot.waitUntil(lambda: len(window.editor.scene.geometry) == 2, timeout=60_000)
+    window.strip.vtk.click()
+    stage = wait_for_stage(window, qtbot)
+    panel = window.vtk.panel
+
+    def seeds() -> Any:
+        return window.editor.scene.geometry[0].tracing.seeds
+
+    choose(panel, "surface")
+    qtbot.waitUntil(lambda: seeds().kind == "surface", timeout=60_000)
+    assert window.editor.scene.geometry[0].shape.bounds[:, 1] == pytest.approx((14, 26), abs=0.5)
+    choose(panel, "points")
+    for offset in (QPoint(0, 0), QPoint(20, 30)):
+        qtbot.mouseClick(
+            stage.view, LEFT, Qt.KeyboardModifier.NoModifier, stage.view.rect().center() + offset
+        )
+    qtbot.waitUntil(lambda: len(seeds().places) == 2, timeout=60_000)
+    assert np.abs(np.subtract(seeds().places[0], (20, 14, 20))).max() < 2, (
+        "on the ball, as seen from the front"
+    )
+
+
 def test_seeds_are_placed_and_streamlines_follow(
     make_window: Any, hand_of: Any, flow: str, qtbot: Any
 ) -> None:
     window = make_window(size=(1000, 600))
     window.open(flow)
-    qtbot.waitUntil(lambda: window.editor.scene.volume is not None, timeout=30_000)
+    qtbot.waitUntil(lambda: window.editor.scene.volume is not None, timeout=60_000)
     window.strip.vtk.click()
     stage = wait_for_stage(window, qtbot)
     panel = window.vtk.panel
     choose(panel, "sphere")
-    qtbot.waitUntil(lambda: bool(window.editor.scene.geometry), timeout=30_000)
+    qtbot.waitUntil(lambda: window.editor.scene.geometry[0].tracing.seeds.kind == "sphere", timeout=60_000)
     first = window.editor.scene.geometry[0]
     assert first.kind == "streamlines"
     assert first.shape.count == 200
     assert np.abs(np.diff(first.shape.points[:2], axis=0)[0][1:]).max() < 1e-4, "along x"
     window.editor.change("Colour", **{"geometry.0.colormap": "magma"})
     panel.count.setValue(50)
-    qtbot.waitUntil(lambda: window.editor.scene.geometry[0].shape.count == 50, timeout=30_000)
+    qtbot.waitUntil(lambda: window.editor.scene.geometry[0].shape.count == 50, timeout=60_000)
     assert len(window.editor.scene.geometry) == 1, "new ones replace the old ones"
     assert window.editor.scene.geometry[0].colormap == "magma", "and look as they did"
     choose(panel, "line")
-    qtbot.waitUntil(lambda: window.editor.scene.geometry[0].tracing.seeds.kind == "line", timeout=30_000)
+    qtbot.waitUntil(lambda: window.editor.scene.geometry[0].tracing.seeds.kind == "line", timeout=60_000)
     choose(panel, "plane")
-    qtbot.waitUntil(lambda: window.editor.scene.geometry[0].tracing.seeds.kind == "plane", timeout=30_000)
+    qtbot.waitUntil(lambda: window.editor.scene.geometry[0].tracing.seeds.kind == "plane", timeout=60_000)
     assert stage.view.isValid()
 
 

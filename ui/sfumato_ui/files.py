@@ -16,7 +16,7 @@ from sfumato.geometry import is_geometry
 from .autosave import Slot
 from .dialogs import ask_about_unsaved
 from .editing import Editor
-from .loading import SCENE_SUFFIX, Loader, Wish
+from .loading import SCENE_SUFFIX, Loader, Wish, geometry_notices
 from .messages import MessageBar
 from .raw_dialog import RawDialog
 from .recent import last_folder, remember
@@ -158,8 +158,11 @@ class Files(QObject):
             self._editor.document.mark_unsaved()
             self.recovered.emit(wish.slot)
         self.opened.emit()
-        if scene.volume is not None and scene.volume.info.notices:
-            self._bar.show_notice("\n".join(scene.volume.info.notices))
+        notices = [*(scene.volume.info.notices if scene.volume is not None else ())]
+        for geometry in scene.geometry:
+            notices += geometry_notices(geometry, scene.volume)
+        if notices:
+            self._bar.show_notice("\n".join(dict.fromkeys(notices)))
         if self._more:
             more, self._more = self._more, []
             self._add_geometry(more)

@@ -18,6 +18,7 @@ from .icons import icon
 from .section import Section
 from .sliders import LabelledSlider
 from .theme import current_theme
+from .tracing_controls import TracingControls
 
 #: Colour maps that are even to the eye, and one with a middle for values with a sign.
 COLORMAPS = ("viridis", "magma", "plasma", "cividis", "coolwarm", "gray")
@@ -31,6 +32,8 @@ class GeometryControls(Section):
 
     #: Controls came or went.
     rebuilt = Signal()
+    #: Streamlines are to be traced in another way (`Tracing`).
+    trace_wanted = Signal(object)
 
     def __init__(self, editor: Editor) -> None:
         super().__init__("Geometry", "geometry")
@@ -46,6 +49,7 @@ class GeometryControls(Section):
         self.count.setWordWrap(True)
         self.rows: dict[str, QWidget] = {}
         self.sliders: dict[str, LabelledSlider] = {}
+        self.tracing = TracingControls()
         self._lay_out()
         self._connect()
         self.refresh()
@@ -75,6 +79,7 @@ class GeometryControls(Section):
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(4)
         self.add(self._sliders)
+        self.add(self.tracing)
         self.choice.setAccessibleName("Geometry")
         self.choice.setToolTip("Tracts and meshes of the scene; drop a file on the picture to add one")
         for name in COLORMAPS:
@@ -100,6 +105,8 @@ class GeometryControls(Section):
         self.color.picked.connect(lambda color: self._set("Colour geometry", color=color))
         self.color.opened.connect(lambda: editor.begin("Colour geometry"))
         self.color.closed.connect(editor.end)
+        self.tracing.wanted.connect(self.trace_wanted)
+        self.tracing.rebuilt.connect(self.rebuilt)
         editor.changed.connect(self._on_changed)
 
     def _on_changed(self, old: Scene, new: Scene) -> None:
@@ -140,6 +147,7 @@ class GeometryControls(Section):
         self._list(scene)
         self.setVisible(bool(scene.geometry))
         geometry = self.geometry_shown
+        self.tracing.show_tracing(geometry)
         if geometry is None:
             self._shown = None
             return
@@ -217,6 +225,7 @@ class GeometryControls(Section):
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
         theme = current_theme()
+        self.tracing.refresh_theme()
         self.visible.setIcon(icon("mute" if self.visible.isChecked() else "shown", theme))
         self.remove.setIcon(icon("remove", theme))
 

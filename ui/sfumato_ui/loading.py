@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ from typing import Any
 from qtpy.QtCore import QObject, Signal
 
 import sfumato_samples
-from sfumato import Geometry, Scene, Tracing, Volume
+from sfumato import Geometry, Scene, SfumatoError, Tracing, Volume
 from sfumato.export.png import carries_scene, open_png
 from sfumato.geometry import is_geometry
 from sfumato.scene.presets import presets_for, suggest_view
@@ -152,6 +152,8 @@ class Loader(QObject):
             scene = read_scene(wish, progress, stop.is_set, aspect)
         except NeedsDescription as error:
             return partial(self.raw_found.emit, error.path, guess_raw(error.path))
+        if not (wish.scene_path or wish.slot):
+            scene = with_streamlines(scene, progress, stop.is_set)
         return partial(self.loaded.emit, scene, wish)
 
     def _open_geometry(
@@ -198,6 +200,31 @@ def read_scene(wish: Wish, progress: Any = None, cancel: Any = None, aspect: flo
         scene = _fitting(_read_volume(wish, progress, cancel), aspect)
     _prepare(scene)
     return scene
+
+
+def with_streamlines(scene: Scene, progress: Any = None, cancel: Any = None) -> Scene:
+    """Return a new scene with streamlines of its volume's vectors, if it has any: seen without a single click."""
+    from sfumato.geometry import has_vectors, load_field, mesh_of, suggest_seeds, trace
+    from sfumato.io import LoadCancelled
+
+    volume = scene.volume
+    if volume is None or scene.geometry or not has_vectors(volume.info.path):
+        return scene
+    try:
+        field = load_field(volume.info.path)
+        tracing = Tracing(path=volume.info.path, seeds=suggest_seeds(field))
+        made = trace(tracing, field, progress=progress, cancel=cancel)
+        mesh_of(made)
+    except LoadCancelled:
+        raise
+    except SfumatoError as error:
+        return scene.with_(volume=_noted(volume, f"No streamlines: {one_line(error)}."))
+    return scene.with_(geometry=(made,), technique=technique_drawing_geometry(scene))
+
+
+def _noted(volume: Volume, notice: str) -> Volume:
+    """Return a volume with one more notice."""
+    return replace(volume, info=replace(volume.info, notices=(*volume.info.notices, notice)))
 
 
 def read_geometry(path: str, progress: Any = None, cancel: Any = None) -> Geometry:

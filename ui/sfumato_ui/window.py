@@ -151,6 +151,7 @@ class MainWindow(QMainWindow):
         self.vtk.changed.connect(self.strip.vtk.setChecked)
         self.vtk.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
         self.vtk.trace_wanted.connect(self.files.trace)
+        self.view_page.shapes.trace_wanted.connect(self.files.trace)
         self.view_page.view_chosen.connect(self.look)
         self.view_page.theme_chosen.connect(self.set_theme)
         self.view_page.frames_chosen.connect(self.driver.set_frames)

@@ -20,6 +20,7 @@ from .known import load_known
 from .load import SUFFIXES, is_geometry, load_geometry, outside_notice
 from .meshing import build, mesh_of
 from .polyline import kept_lines
+from .seeding import suggest_seeds
 from .streamlines import trace
 
 __all__ = [
@@ -37,5 +38,6 @@ __all__ = [
     "load_known",
     "mesh_of",
     "outside_notice",
+    "suggest_seeds",
     "trace",
 ]

@@ -102,6 +102,8 @@ def load_geometry(
             color_by=_look(shape),
         )
         made.shape.key  # noqa: B018  (hashed here, in the thread that loads)
+        if isinstance(shape, Lines):
+            shape.lengths, shape.boxes  # noqa: B018  (what the window asks for, too)
         task.step(1.0, "Done")
         return made
 

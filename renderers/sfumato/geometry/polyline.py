@@ -73,11 +73,26 @@ def _passes(lines: Lines, roi: Roi) -> np.ndarray:
     if roi.keep == "ends":
         inside = _touches(lines.points, lines.points, roi)
         return np.asarray(inside[lines.offsets[:-1]] | inside[lines.offsets[1:] - 1])
-    # Each point with the next one; a line's last point with itself.
-    after = np.minimum(np.arange(1, len(lines.points) + 1), len(lines.points) - 1)
-    after[lines.offsets[1:] - 1] = lines.offsets[1:] - 1
-    touched = np.logical_or.reduceat(_touches(lines.points, lines.points[after], roi), lines.offsets[:-1])
+    # Only lines whose boxes meet the region's: most are elsewhere.
+    half = np.asarray(roi.size if roi.kind == "box" else (roi.size[0],) * 3)
+    low, high = lines.boxes
+    center = np.asarray(roi.center)
+    near = np.asarray(((low <= center + half) & (high >= center - half)).all(axis=1))
+    touched = np.zeros(lines.count, dtype=bool)
+    if near.any():
+        touched[near] = _passing(lines, near, roi)
     return touched if roi.keep == "inside" else ~touched
+
+
+def _passing(lines: Lines, chosen: np.ndarray, roi: Roi) -> np.ndarray:
+    """Tell which of the chosen lines pass through a region."""
+    lengths = np.diff(lines.offsets)[chosen]
+    points = lines.points[np.repeat(chosen, np.diff(lines.offsets))]
+    first = np.cumsum(lengths) - lengths
+    # Each point with the next one; a line's last point with itself.
+    after = np.arange(1, len(points) + 1)
+    after[first + lengths - 1] -= 1
+    return np.asarray(np.logical_or.reduceat(_touches(points, points[after], roi), first))
 
 
 def _touches(start: np.ndarray, end: np.ndarray, roi: Roi) -> np.ndarray:

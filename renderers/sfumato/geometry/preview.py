@@ -11,16 +11,22 @@ from ..io.reading import Task, need
 from ..scene.geometry import Geometry
 from ..scene.shapes import Lines
 from .color import point_colors
-from .meshing import mesh_of
-from .polyline import Strand, kept_lines, line_numbers
+from .meshing import COARSEST, mesh_of
+from .polyline import Strand, strand_of, thinned_out
 from .tubes import tangents_of
 
 #: Name of the array of colours, 8-bit sRGB.
 COLORS = "colors"
+#: Points of lines in a preview, at most: beyond, whole lines are left out evenly. VTK draws on the window's
+#: thread, and a software renderer takes 0.1 s for so many.
+MOST_POINTS = 150_000
 
 
 def poly_of(geometry: Geometry) -> tuple[Any, np.ndarray]:
     """Return a vtkPolyData of what the filters leave, with `COLORS`, and what its cells are.
+
+    Points on nearly straight parts are left out; of very many lines every second, third, … is shown:
+    `MOST_POINTS`.
 
     Returns
     -------
@@ -30,7 +36,7 @@ def poly_of(geometry: Geometry) -> tuple[Any, np.ndarray]:
         The number of the line in ``geometry.shape`` that each cell is; of the triangle for a surface.
     """
     if isinstance(geometry.shape, Lines):
-        return _lines(geometry, geometry.shape)
+        return _lines(geometry)
     mesh = mesh_of(geometry)
     count = len(mesh.triangles)
     poly = _poly(mesh.points, mesh.colors)
@@ -50,17 +56,26 @@ def line_poly(geometry: Geometry, number: int) -> Any:
     return poly
 
 
-def _lines(geometry: Geometry, shape: Lines) -> tuple[Any, np.ndarray]:
-    kept = kept_lines(geometry)
-    line = line_numbers(shape)
-    seen = kept[line]
-    strand = Strand(shape.points[seen], line[seen], np.empty((int(seen.sum()), 0), np.float32))
-    values = geometry.scalar_values(geometry.scalar)[seen] if geometry.color_by == "scalar" else None
+def _lines(geometry: Geometry) -> tuple[Any, np.ndarray]:
+    names = (geometry.scalar,) if geometry.color_by == "scalar" else ()
+    strand = _few_enough(strand_of(geometry, names), 8 * MOST_POINTS)
+    if len(strand.points):
+        strand = _few_enough(thinned_out(strand, COARSEST * geometry.radius), MOST_POINTS)
+    values = strand.values[:, 0] if names else None
     tangents = tangents_of(strand) if len(strand.points) else np.empty((0, 3), np.float32)
     poly = _poly(strand.points, point_colors(geometry, tangents, values))
-    lengths = np.diff(shape.offsets)[kept]
+    numbers, lengths = np.unique(strand.line, return_counts=True)
     poly.SetLines(_cells(np.concatenate([[0], np.cumsum(lengths)]), np.arange(len(strand.points))))
-    return poly, np.flatnonzero(kept)
+    return poly, numbers
+
+
+def _few_enough(strand: Strand, most: int) -> Strand:
+    """Leave out lines evenly until their points are few enough."""
+    every = -(-len(strand.points) // most)
+    if every < 2:
+        return strand
+    numbers = np.unique(strand.line)
+    return strand.taken(np.isin(strand.line, numbers[::every]))
 
 
 def _module(name: str) -> Any:

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from ..errors import LoadError
+from ..io.reading import Task, need
 from ..scene.shapes import Surface
 from ..scene.tracing import Seeds
+
+if TYPE_CHECKING:
+    from .field import VectorField
 
 #: Steps of the R2 sequence (Roberts 2018): evenly spread in the square for any number of points.
 _R2 = np.array([0.7548776662466927, 0.5698402909980532])
@@ -33,6 +41,25 @@ def seed_points(seeds: Seeds, surface: Surface | None = None) -> np.ndarray:
         assert surface is not None
         return _on_surface(surface, seeds)
     return _in_ball(seeds)
+
+
+def suggest_seeds(field: VectorField, count: int = 200) -> Seeds:
+    """Return seeds for a first picture: places in the whole field, more of them where it is faster.
+
+    Raises
+    ------
+    LoadError
+        If the field is at rest everywhere.
+    """
+    from .field import SPEED
+
+    support = need("vtkmodules.util.numpy_support", Task(Path(field.path or "vectors")))
+    speed = support.vtk_to_numpy(field.dataset.GetPointData().GetArray(SPEED)).astype(float)
+    if not speed.sum() > 0:
+        raise LoadError(field.path or "vectors", "all vectors are zero", "choose another field")
+    chosen = np.random.default_rng(0).choice(len(speed), count, p=speed / speed.sum())
+    places = (field.dataset.GetPoint(int(i)) for i in np.unique(chosen))
+    return Seeds(kind="points", places=tuple((float(x), float(y), float(z)) for x, y, z in places))
 
 
 def _in_ball(seeds: Seeds) -> np.ndarray:

@@ -126,6 +126,12 @@ class Lines(_Keyed):
         first, last = self.offsets[:-1], self.offsets[1:] - 1
         return np.asarray(along[last] - along[first])
 
+    @functools.cached_property
+    def boxes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Smallest and largest coordinates of each line in mm, each of shape (k, 3)."""
+        first = self.offsets[:-1]
+        return np.minimum.reduceat(self.points, first), np.maximum.reduceat(self.points, first)
+
     def __repr__(self) -> str:
         return f"<Lines {self.count} with {len(self.points)} points>"
 

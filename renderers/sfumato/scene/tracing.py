@@ -75,13 +75,20 @@ class Tracing:
         Param("Longest streamline; 0: ten times the field's longest edge", label="Length", unit="mm", ge=0),
     ] = 0.0
     step: Annotated[
-        float, Param("Longest step of the integration", label="Step", unit="voxel", ge=0.01, le=10)
+        float,
+        Param("Longest step of the integration", label="Step", unit="voxel", ge=0.01, le=10, soft=(0.05, 2)),
     ] = 0.5
     direction: Annotated[
         str, Param("Which way from the seeds", label="Direction", choices=("both", "forward", "backward"))
     ] = "both"
     min_speed: Annotated[
-        float, Param("Stop where the field is weaker than this part of its strongest", ge=0, le=1)
+        float,
+        Param(
+            "Streamlines end where the field is weaker than this part of its strongest",
+            label="End below",
+            ge=0,
+            le=1,
+        ),
     ] = 1e-4
     max_steps: Annotated[int, Param("Most steps of a streamline", ge=1, le=1_000_000)] = 5000
     integrator: Annotated[str, Param("Runge-Kutta scheme", choices=("rk2", "rk4", "rk45"))] = "rk45"

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import threading
 from dataclasses import replace
 
 import numpy as np
-from qtpy.QtCore import QObject, Qt, Signal
+from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QGuiApplication
 from qtpy.QtWidgets import (
     QFrame,
@@ -18,8 +17,9 @@ from qtpy.QtWidgets import (
     QVBoxLayout,
 )
 
-from sfumato import Lines, Roi, Scene, Tracing
+from sfumato import Lines, Roi, Scene, Surface, Tracing
 from sfumato.geometry import has_vectors
+from sfumato.scene import Seeds
 
 from ..editing import Editor
 from ..generated import ChoiceBox
@@ -27,6 +27,7 @@ from ..icons import icon
 from ..sliders import NumberBox
 from ..subject import bounds_of, size_of
 from ..theme import current_theme
+from .importing import VtkImporter
 from .stage import Pick, VtkStage
 from .tools import PlacingTool
 
@@ -36,34 +37,24 @@ TOOLS = {
     "sphere": "Seeds: sphere",
     "line": "Seeds: line",
     "plane": "Seeds: plane",
+    "points": "Seeds: points",
+    "surface": "Seeds: on the surface",
 }
+#: Tools that place seeds, and which of them are one of VTK's widgets.
+SEEDING = ("sphere", "line", "plane", "points", "surface")
+WIDGETS = ("box", "sphere", "line", "plane")
 HELP = {
     "look": "Click a line to pick it",
     "box": "Lines through the box stay",
     "sphere": "Drag the sphere: streamlines begin in it",
     "line": "Drag the line: streamlines begin on it",
     "plane": "Drag the plane: streamlines begin on it",
+    "points": "Click where a streamline is to begin",
+    "surface": "Streamlines begin on the surface",
 }
 #: Radius of the region that a pick keeps, as a part of the subject's diagonal.
 KEPT_RADIUS = 0.02
 SEEDS = 200
-
-
-class _Importer(QObject):
-    """Imports VTK, which takes seconds the first time, away from the window's thread."""
-
-    done = Signal(str)
-
-    def start(self) -> None:
-        threading.Thread(target=self._run, name="sfumato-import-vtk", daemon=True).start()
-
-    def _run(self) -> None:
-        problem = ""
-        try:
-            import pyvistaqt  # noqa: F401
-        except Exception as error:  # a broken installation may raise anything
-            problem = str(error) or type(error).__name__
-        self.done.emit(problem)
 
 
 class VtkPanel(QFrame):
@@ -83,6 +74,9 @@ class VtkPanel(QFrame):
         self.stage: VtkStage | None = None
         self.placing: PlacingTool | None = None
         self._pick: Pick | None = None
+        self._places: tuple[tuple[float, float, float], ...] = ()
+        self._thinned = ""
+        self._field = ("", False)
         self.tool = ChoiceBox()
         self.told = QLabel("Starting VTK…")
         self.keep = QPushButton("Keep lines here")
@@ -92,7 +86,7 @@ class VtkPanel(QFrame):
         self.shut = _button("Close the VTK view")
         self._lay_out()
         self._connect()
-        self._importer = _Importer(self)
+        self._importer = VtkImporter(self)
         self._importer.done.connect(self._on_imported)
 
     # -- building ---------------------------------------------------------------------------------
@@ -161,6 +155,8 @@ class VtkPanel(QFrame):
         self._column.takeAt(self._column.count() - 1)
         self._column.addWidget(self.stage.view, 1)
         self.stage.picked.connect(self._on_picked)
+        self.stage.clicked.connect(self._on_clicked)
+        self.stage.thinned.connect(self._on_thinned)
         self.placing = PlacingTool(self.stage)
         self.placing.placed.connect(self._on_placed)
         self._take_tool()
@@ -184,8 +180,20 @@ class VtkPanel(QFrame):
     def _offered(self) -> list[str]:
         scene = self._editor.scene
         lines = any(isinstance(g.shape, Lines) for g in scene.geometry)
-        field = scene.volume is not None and has_vectors(scene.volume.info.path)
-        return ["look", *(["box"] if lines else []), *(["sphere", "line", "plane"] if field else [])]
+        field = scene.volume is not None and self._has_vectors(scene.volume.info.path)
+        seeding = [name for name in SEEDING if name != "surface" or self._surface()]
+        return ["look", *(["box"] if lines else []), *(seeding if field else [])]
+
+    def _has_vectors(self, path: str) -> bool:
+        """Tell whether a file has vectors; it is looked at once."""
+        if self._field[0] != path:
+            self._field = (path, has_vectors(path))
+        return self._field[1]
+
+    def _surface(self) -> str:
+        """Return the file of the first surface of the scene, or nothing."""
+        geometry = self._editor.scene.geometry
+        return next((g.path for g in geometry if isinstance(g.shape, Surface) and g.path), "")
 
     def _show_tool(self) -> None:
         """Offer what the scene allows, and show what the active tool needs."""
@@ -196,18 +204,22 @@ class VtkPanel(QFrame):
                 self.tool.addItem(TOOLS[name], name)
             self.tool.setCurrentIndex(max(0, self.tool.findData(before)))
         name = self.tool_name
-        self.count.setVisible(name in ("sphere", "line", "plane"))
+        self.count.setVisible(name in SEEDING and name != "points")
         self.radius.setVisible(name == "sphere")
         self.keep.setVisible(name == "look" and self._pick is not None)
         self.all_lines.setVisible(any(g.rois for g in self._editor.scene.geometry))
 
     def _take_tool(self) -> None:
         name, corners = self.tool_name, bounds_of(self._editor.scene)
-        self.told.setText(HELP[name])
+        self._places = ()
+        self._tell_help()
+        if self.stage is not None:
+            self.stage.show_points(())
         if self.placing is not None:
             self.placing.hide()
-            if name != "look" and corners is not None:
+            if name in WIDGETS and corners is not None:
                 self.placing.show(name, np.stack([corners.min(axis=0), corners.max(axis=0)]))
+            if name != "look":
                 self._on_placed()
         if name == "sphere" and self.placing is not None:
             self.radius.blockSignals(True)
@@ -215,28 +227,58 @@ class VtkPanel(QFrame):
             self.radius.blockSignals(False)
         self._show_tool()
 
+    def _tell_help(self) -> None:
+        thinned = f" ({self._thinned})" if self._thinned and self.tool_name == "look" else ""
+        self.told.setText(HELP[self.tool_name] + thinned)
+        self.told.setToolTip(self.told.text())
+
+    def _on_thinned(self, text: str) -> None:
+        self._thinned = text
+        if self._pick is None:
+            self._tell_help()
+
     def _set_radius(self, radius: float) -> None:
         if self.placing is not None:
             self.placing.set_radius(radius)
 
     def _on_placed(self) -> None:
         """Trace from where the seeds are, or keep the lines through the box."""
-        if self.placing is None or not self.placing.kind:
-            return
-        if self.placing.kind == "box":
+        if self.placing is not None and self.placing.kind == "box":
             self._set_regions("Choose lines by a box", (self.placing.region(),))
             return
-        volume = self._editor.scene.volume
-        if volume is not None:
-            seeds = self.placing.seeds(round(self.count.value()))
-            self.trace_wanted.emit(Tracing(path=volume.info.path, seeds=seeds))
+        volume, seeds = self._editor.scene.volume, self._seeds()
+        if volume is None or seeds is None:
+            return
+        # Length, steps and all else as in the streamlines that are replaced.
+        known = [g.tracing for g in self._editor.scene.geometry if g.tracing is not None]
+        same = next((t for t in known if t.path == volume.info.path), Tracing(path=volume.info.path))
+        self.trace_wanted.emit(replace(same, seeds=seeds))
+
+    def _seeds(self) -> Seeds | None:
+        """Return the seeds of the active tool; nothing if it has none yet."""
+        count, name = round(self.count.value()), self.tool_name
+        if name == "surface" and self._surface():
+            return Seeds(kind="surface", path=self._surface(), count=count)
+        if name == "points":
+            return Seeds(kind="points", places=self._places) if self._places else None
+        return self.placing.seeds(count) if self.placing is not None and self.placing.kind else None
+
+    def _on_clicked(self, point: tuple[float, float, float]) -> None:
+        """Let a streamline begin where the click was."""
+        if self.tool_name == "points" and self.stage is not None:
+            self._places = (*self._places, point)
+            self.stage.show_points(self._places)
+            self._on_placed()
 
     # -- picking ----------------------------------------------------------------------------------
     def _on_picked(self, pick: Pick | None) -> None:
         if self.tool_name != "look":
             return
         self._pick = pick
-        self.told.setText(self._pick_text(pick) if pick is not None else HELP["look"])
+        if pick is not None:
+            self.told.setText(self._pick_text(pick))
+        else:
+            self._tell_help()
         self._show_tool()
 
     def _pick_text(self, pick: Pick) -> str:

@@ -12,11 +12,13 @@ from qtpy.QtGui import QMouseEvent
 from qtpy.QtWidgets import QWidget
 
 from sfumato import Geometry, Lines, Scene
-from sfumato.geometry.preview import line_poly, poly_of
+from sfumato.geometry import kept_lines
+from sfumato.geometry.preview import line_poly
 
 from ..editing import Editor
 from ..subject import bounds_of, size_of
 from ..theme import PICTURE_GREY
+from .builder import PolyBuilder
 from .link import camera_of, same_view, show_camera
 
 #: A click is a press and a release within so many pixels.
@@ -64,6 +66,10 @@ class VtkStage(QObject):
 
     #: A line was picked (`Pick`), or a click met nothing (None).
     picked = Signal(object)
+    #: A click, wherever: the point on what it met, or at the depth of the camera's focus (x, y, z in mm).
+    clicked = Signal(object)
+    #: Not all lines are shown, or all again (a sentence, or nothing).
+    thinned = Signal(str)
 
     def __init__(self, editor: Editor, parent: QWidget) -> None:
         super().__init__(parent)
@@ -74,8 +80,12 @@ class VtkStage(QObject):
         self._pressed: QPointF | None = None
         #: By place in the scene: geometry, its actor (None if nothing of it is left), what its cells are.
         self._actors: dict[int, tuple[Geometry, Any, np.ndarray]] = {}
+        self._builder = PolyBuilder(self)
+        self._builder.built.connect(self._on_built)
+        self._builder.failed.connect(self.thinned)
         self._box: Any = None
         self._mark: Any = None
+        self._dots: Any = None
         make: Any = QtInteractor
         self.view: Any = make(parent, auto_update=False)
         # pyvista's own keys (q, e, w, …) would close or change the view behind the document's back.
@@ -104,6 +114,7 @@ class VtkStage(QObject):
     def close(self) -> None:
         """Give VTK's context back, on this thread, while the widget is still there."""
         self._editor.changed.disconnect(self._on_changed)
+        self._builder.close()
         self._redraw.stop()
         self._after.stop()
         self.view.removeEventFilter(self)
@@ -126,16 +137,40 @@ class VtkStage(QObject):
         self.mark(None)
         self._follow_ours()
 
+    @property
+    def busy(self) -> bool:
+        """Whether some of the scene's geometry is still being built."""
+        shown = self._editor.scene.geometry
+        known = [self._actors.get(i) for i in range(len(shown))]
+        keys = zip(known, shown, strict=True)
+        return any(k is None or k[0].mesh_key != g.mesh_key for k, g in keys)
+
     def _show_geometry(self, index: int, geometry: Geometry) -> None:
         known = self._actors.get(index)
         if known is not None and known[0].mesh_key == geometry.mesh_key:
             if known[1] is not None:
                 known[1].SetVisibility(geometry.visible)
             return
+        self._builder.want(index, geometry)
+
+    def _on_built(self, index: int, geometry: Geometry, made: tuple[Any, np.ndarray]) -> None:
+        """Put what was built in the place of what was there, if the scene still wants it."""
+        wanted = self._editor.scene.geometry
+        if index >= len(wanted) or wanted[index].mesh_key != geometry.mesh_key:
+            return
+        known = self._actors.get(index)
         if known is not None:
             self._remove(known[1])
-        poly, numbers = poly_of(geometry)
-        self._actors[index] = (geometry, self._actor(geometry, poly), numbers)
+        poly, numbers = made
+        self._actors[index] = (geometry, self._actor(wanted[index], poly), numbers)
+        self.redraw()
+        self.thinned.emit(self._thinned_text())
+
+    def _thinned_text(self) -> str:
+        """Tell how many of the lines are shown here, if not all."""
+        lines = [(g, n) for g, _, n in self._actors.values() if isinstance(g.shape, Lines)]
+        shown, kept = sum(len(n) for _, n in lines), sum(int(kept_lines(g).sum()) for g, _ in lines)
+        return f"{shown:,} of {kept:,} lines are shown here".replace(",", " ") if shown < kept else ""
 
     def _actor(self, geometry: Geometry, poly: Any) -> Any:
         """Return what shows poly data; nothing where the filters leave nothing."""
@@ -191,10 +226,25 @@ class VtkStage(QObject):
             )
         self.redraw()
 
+    def show_points(self, places: tuple[tuple[float, float, float], ...]) -> None:
+        """Show single seeds."""
+        self._remove(self._dots)
+        self._dots = None
+        if places:
+            import pyvista
+
+            self._dots = self.view.add_mesh(
+                pyvista.PolyData(np.asarray(places, np.float32)), color=PICKED, point_size=9,
+                render_points_as_spheres=True, reset_camera=False, render=False, pickable=False,
+            )  # fmt: skip
+        self.redraw()
+
     # -- the camera -------------------------------------------------------------------------------
     def _follow_ours(self) -> None:
+        if self._following:  # VTK has moved its camera itself, and drawn it
+            return
         camera = self._editor.scene.camera
-        if camera is not None and not self._following:
+        if camera is not None:
             show_camera(camera, self.view.renderer.GetActiveCamera())
         self.redraw()
 
@@ -250,10 +300,13 @@ class VtkStage(QObject):
         made = None if found is None else Pick(*found, tuple(float(v) for v in picker.GetPickPosition()))  # type: ignore[arg-type]
         self.mark(made)
         self.picked.emit(made)
+        self.clicked.emit(tuple(float(v) for v in picker.GetPickPosition()))
 
     def _of_actor(self, actor: Any, cell: int) -> tuple[int, int] | None:
         for index, (geometry, own, numbers) in self._actors.items():
-            if own is actor and 0 <= cell < len(numbers) and isinstance(geometry.shape, Lines):
+            scene = self._editor.scene.geometry
+            current = index < len(scene) and scene[index].shape is geometry.shape
+            if own is actor and current and 0 <= cell < len(numbers) and isinstance(geometry.shape, Lines):
                 return index, int(numbers[cell])
         return None
 
