@@ -205,7 +205,7 @@ def test_what_is_wrong_is_counted_and_the_rest_shown(window, tmp_path, qtbot, ma
 def test_tracts_without_a_line_are_refused(window, tmp_path, qtbot):
     drop(window, trk(tmp_path / "empty.trk", []))
     qtbot.waitUntil(lambda: window.messages.kind == "error", timeout=60_000)
-    assert "empty.trk" in window.messages.text
+    assert "empty.trk: there is nothing to show (it holds no lines)" in window.messages.text
     assert window.editor.scene.geometry == ()
 
 

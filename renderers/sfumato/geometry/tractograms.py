@@ -45,7 +45,8 @@ def _read(task: Task, kind: str) -> RawLines:
         tractogram = getattr(streamlines, kind).load(stream).tractogram
     lines = tractogram.streamlines
     points, lengths = _flat(lines)
-    raw = RawLines(to_lps(points), lengths, notices=_header_notices(heard))
+    # Without a line nibabel's array has no columns.
+    raw = RawLines(to_lps(points.reshape(-1, 3)), lengths, notices=_header_notices(heard))
     for name, values in tractogram.data_per_point.items():
         raw.point_values[str(name)] = _flat(values)[0]
     for name, values in tractogram.data_per_streamline.items():
