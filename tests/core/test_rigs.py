@@ -27,8 +27,9 @@ def subject() -> Scene:
     return Scene(volume=Volume(data), transfer=look, step=1.0)
 
 
-def test_the_six_rigs() -> None:
-    assert list(rigs()) == ["top-left", "headlamp", "three-point", "rim", "raking", "flat"]
+def test_the_rigs() -> None:
+    first = ["top-left", "headlamp", "three-point", "rim", "raking", "flat"]
+    assert list(rigs()) == [*first, "under-light", "soft-box"]
     assert rigs()["top-left"].lights == (Light(),), "a new scene is lit by the first rig"
     for name, rig in rigs().items():
         assert rig.id == name

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -204,3 +205,29 @@ def test_the_dial_shows_who_shines(lit: MainWindow) -> None:
     before = ball()
     lit.editor.change("Solo", **{"lights.2.solo": True})
     assert ball().mean() < before.mean() - 5, "a rim alone leaves the ball's front dark"
+
+
+def test_a_lamp_is_duplicated(lit: MainWindow, qtbot: QtBot) -> None:
+    editor, tools = lit.editor, lit.light_page.tools
+    qtbot.mouseClick(lit.light_page.lamps.chips[1], LEFT)
+    before = editor.scene.lights
+    qtbot.mouseClick(tools.duplicate, LEFT)
+    assert names(lit) == ["key", "fill", "fill 2", "rim"]
+    assert editor.selected == 2
+    assert editor.scene.lights[2] == replace(before[1], name="fill 2")
+    assert not tools.duplicate.isEnabled(), "four are the most that the technique uses"
+    assert "At most 4" in tools.duplicate.toolTip()
+    editor.undo()
+    assert editor.scene.lights == before
+
+
+def test_further_rigs_wait_under_more(lit: MainWindow, qtbot: QtBot) -> None:
+    page = lit.light_page
+    assert list(page.more_rigs.buttons) == ["under-light", "soft-box"]
+    page.more.set_open(True)
+    QApplication.processEvents()
+    page.ensureWidgetVisible(page.more_rigs)
+    qtbot.mouseClick(page.more_rigs.buttons["under-light"], LEFT)
+    assert lit.editor.scene.lights == rigs()["under-light"].lights
+    assert page.more_rigs.buttons["under-light"].isChecked()
+    assert not any(button.isChecked() for button in page.rigs.buttons.values())

@@ -22,6 +22,7 @@ _GLYPHS = {
     "clip": "ph.crop",
     "flip": "ph.arrows-left-right",
     "add": "ph.plus",
+    "duplicate": "ph.copy",
     "remove": "ph.trash",
     "rename": "ph.pencil-simple",
     "mute": "ph.eye-slash",

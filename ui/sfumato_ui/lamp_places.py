@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from sfumato import Light, Scene
-from sfumato.scene import nearest_possible_tilt
+from sfumato.scene import MAX_LIGHTS, nearest_possible_tilt
 from sfumato.scene.light import FARTHEST, PATIENT_BASIS
-from sfumato.techniques import Technique
+from sfumato.techniques import Technique, technique_for
 
 from . import light_moves
 
@@ -51,6 +51,11 @@ def kind_of(light: Light) -> LampKind:
 def offered_kinds(technique: Technique, light: Light) -> tuple[LampKind, ...]:
     """Return the kinds that the technique lights as what they are, and the one that the lamp is."""
     return tuple(k for k in KINDS if k.kind in technique.kinds or k == kind_of(light))
+
+
+def most_lamps(scene: Scene) -> int:
+    """Return how many lamps are of use: four for a single-lamp technique, too, since another may be chosen."""
+    return min(MAX_LIGHTS, max(4, technique_for(scene.technique).max_lights))
 
 
 # -- where it is --------------------------------------------------------------------------------------
@@ -241,6 +246,7 @@ __all__ = [
     "dial_angles",
     "kind_of",
     "middle_of",
+    "most_lamps",
     "moved",
     "offered_kinds",
     "place_words",

@@ -1,6 +1,8 @@
-"""What is done with the selected lamp beside the dial: kind, intensity, colour, mute, solo, remove."""
+"""What is done with the selected lamp beside the dial: kind, intensity, colour, mute, solo, duplicate, remove."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QGridLayout, QLabel, QToolButton, QWidget
@@ -13,7 +15,8 @@ from .color_button import RGB, ColorButton
 from .editing import Editor
 from .generated import ChoiceBox, tooltip_of
 from .icons import icon
-from .lamp_places import KINDS, as_kind, kind_of, offered_kinds
+from .lamp_chip import LONGEST_NAME
+from .lamp_places import KINDS, as_kind, kind_of, most_lamps, offered_kinds
 from .sliders import NumberBox
 from .theme import current_theme
 
@@ -32,6 +35,7 @@ class LampTools(QWidget):
         self.color = ColorButton("Colour of the lamp")
         self.mute = _button("Mute the lamp", checkable=True)
         self.solo = _button("Solo: the other lamps are dark", checkable=True)
+        self.duplicate = _button("Duplicate the lamp")
         self.remove = _button("Remove the lamp")
         self._lay_out()
         self.kind.activated.connect(lambda index: self._set_kind(self.kind.itemData(index)))
@@ -39,6 +43,7 @@ class LampTools(QWidget):
         self.color.picked.connect(self._set_color)
         self.mute.clicked.connect(self._set_muted)
         self.solo.clicked.connect(self._set_solo)
+        self.duplicate.clicked.connect(self._duplicate)
         self.remove.clicked.connect(self._remove)
         editor.changed.connect(self._on_changed)
         editor.light_selected.connect(self.refresh)
@@ -55,8 +60,8 @@ class LampTools(QWidget):
         self.kind_words.setBuddy(self.kind)
         rows = (self.kind_words, self.kind, words, self.intensity, QLabel("Colour"), self.color)
         for row, widget in enumerate(rows, 1):
-            grid.addWidget(widget, row, 0, 1, 3)
-        for column, button in enumerate((self.mute, self.solo, self.remove)):
+            grid.addWidget(widget, row, 0, 1, 4)
+        for column, button in enumerate((self.mute, self.solo, self.duplicate, self.remove)):
             grid.addWidget(button, len(rows) + 1, column)
         grid.setRowStretch(len(rows) + 2, 1)
 
@@ -79,6 +84,10 @@ class LampTools(QWidget):
         self.mute.setToolTip("Mute the lamp" if light.enabled else "Let the lamp shine again")
         self.solo.setChecked(light.solo)
         self.solo.setToolTip("Let all lamps shine" if light.solo else "Solo: the other lamps are dark")
+        most = most_lamps(self._editor.scene)
+        room = len(self._editor.scene.lights) < most
+        self.duplicate.setEnabled(room)
+        self.duplicate.setToolTip("Duplicate the lamp" if room else f"At most {most} lamps")
         alone = len(self._editor.scene.lights) == 1
         self.remove.setEnabled(not alone)
         self.remove.setToolTip("The last lamp stays; mute it instead" if alone else "Remove the lamp")
@@ -89,6 +98,7 @@ class LampTools(QWidget):
         theme = current_theme()
         self.mute.setIcon(icon("mute" if self.mute.isChecked() else "shown", theme))
         self.solo.setIcon(icon("solo", theme))
+        self.duplicate.setIcon(icon("duplicate", theme))
         self.remove.setIcon(icon("remove", theme))
 
     def _show_kind(self, light: Light) -> None:
@@ -120,6 +130,18 @@ class LampTools(QWidget):
         chosen = self._editor.selected
         paths = {f"lights.{i}.solo": solo and i == chosen for i in range(len(self._editor.scene.lights))}
         self._editor.change("Solo the lamp" if solo else "Let all lamps shine", **paths)
+
+    def _duplicate(self) -> None:
+        """Put another lamp like the selected one behind it."""
+        lights, chosen = self._editor.scene.lights, self._editor.selected
+        used = {light.name for light in lights}
+        stem = (lights[chosen].name or f"{chosen + 1}")[: LONGEST_NAME - 3]
+        name = next(f"{stem} {i}" for i in range(2, len(lights) + 3) if f"{stem} {i}" not in used)
+        copy = replace(lights[chosen], name=name, solo=False)
+        if self._editor.change(
+            "Duplicate the lamp", lights=(*lights[: chosen + 1], copy, *lights[chosen + 1 :])
+        ):
+            self._editor.select_light(chosen + 1)
 
     def _remove(self) -> None:
         gone = self._editor.selected

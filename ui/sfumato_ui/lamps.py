@@ -6,13 +6,12 @@ from qtpy.QtCore import QPoint, QRect
 from qtpy.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from sfumato import Light, Scene
-from sfumato.scene import MAX_LIGHTS
 from sfumato.scene.light import shining
-from sfumato.techniques import techniques
 
 from .editing import Editor
 from .icons import icon
 from .lamp_chip import LampChip, NameLine
+from .lamp_places import most_lamps
 from .theme import current_theme
 
 #: What the second to fourth lamp are: a weaker fill from the other side, a rim from behind, a soft top light.
@@ -64,15 +63,10 @@ class LampRow(QWidget):
         for i, (chip, light) in enumerate(zip(self.chips, lights, strict=True)):
             shines = any(light is one for one in shown)
             chip.show_light(light, light.name or str(i + 1), shines, i == self._editor.selected)
-        most = self._most_lamps()
+        most = most_lamps(self._editor.scene)
         self.add.setEnabled(len(lights) < most)
         self.add.setToolTip("Add a lamp" if len(lights) < most else f"At most {most} lamps")
         self.refresh_theme()
-
-    def _most_lamps(self) -> int:
-        """Return how many lamps are of use: four for a single-lamp technique, too, since one may be chosen."""
-        used = techniques()[self._editor.scene.technique_id].max_lights
-        return min(MAX_LIGHTS, max(IN_A_ROW, used))
 
     def _arrange(self) -> None:
         """Put the chips into rows, and the button behind the last."""

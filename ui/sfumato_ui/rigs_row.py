@@ -1,4 +1,4 @@
-"""The six rigs as live pictures of the user's own scene; a click lights it so."""
+"""Rigs as live pictures of the user's own scene; a click lights it so. Six are seen at first, the rest under More."""
 
 from __future__ import annotations
 
@@ -27,8 +27,9 @@ from .editing import Editor
 from .theme import PICTURE_GREY, current_theme
 from .thumbnails import Thumbnails
 
-GROUP = "rigs"
 COLUMNS = 3
+#: Rigs that the tab shows at first.
+FIRST = 6
 #: Width and height of a picture in pixels.
 PICTURE = (88, 60)
 #: Quiet time in milliseconds after which the pictures are drawn anew.
@@ -145,12 +146,13 @@ class RigButton(QAbstractButton):
 
 
 class RigsRow(QWidget):
-    """All rigs; the pictures are drawn when the scene is still and the row is seen."""
+    """Some of the rigs; the pictures are drawn when the scene is still and the row is seen."""
 
-    def __init__(self, editor: Editor, thumbnails: Thumbnails) -> None:
+    def __init__(self, editor: Editor, thumbnails: Thumbnails, group: str = "rigs") -> None:
         super().__init__()
-        self._editor, self._thumbnails = editor, thumbnails
-        self.buttons = {rig.id: RigButton(rig) for rig in rigs().values()}
+        self._editor, self._thumbnails, self._group = editor, thumbnails, group
+        shown = list(rigs().values())[:FIRST] if group == "rigs" else list(rigs().values())[FIRST:]
+        self.buttons = {rig.id: RigButton(rig) for rig in shown}
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setSpacing(2)
@@ -158,6 +160,8 @@ class RigsRow(QWidget):
             grid.addWidget(button, i // COLUMNS, i % COLUMNS)
             button.clicked.connect(lambda _, rig=button.rig: self._apply(rig))
             button.focus_moved.connect(lambda step, i=i: self._move_focus(i + step))
+        for column in range(COLUMNS):
+            grid.setColumnStretch(column, 1)
         self._quiet = QTimer(self)
         self._quiet.setSingleShot(True)
         self._quiet.setInterval(QUIET_MS)
@@ -208,10 +212,10 @@ class RigsRow(QWidget):
         wanted: dict[Hashable, Scene] = {
             name: scene.with_(lights=button.rig.lights) for name, button in self.buttons.items()
         }
-        self._thumbnails.want(GROUP, wanted, size)
+        self._thumbnails.want(self._group, wanted, size)
 
     def _on_ready(self, group: str, key: Hashable, image: QImage) -> None:
-        if group == GROUP and isinstance(key, str) and key in self.buttons:
+        if group == self._group and isinstance(key, str) and key in self.buttons:
             self.buttons[key].set_image(image)
 
     def showEvent(self, event: QShowEvent) -> None:
@@ -223,4 +227,4 @@ class RigsRow(QWidget):
         """Draw nothing that nobody sees."""
         super().hideEvent(event)
         self._quiet.stop()
-        self._thumbnails.forget(GROUP)
+        self._thumbnails.forget(self._group)

@@ -39,7 +39,7 @@ def window_commands(window: MainWindow) -> Commands:
             for i, name in enumerate(("light", "material", "view"))
         },
         **{f"view-{name}": partial(window.look, name) for name in STANDARD_VIEWS},
-        **{f"rig-{name}": window.light_page.rigs.buttons[name].click for name in rigs()},
+        **{f"rig-{name}": window.light_page.rig_buttons[name].click for name in rigs()},
         **{f"technique-{name}": partial(_light_by, window, name) for name in techniques()},
     }
     return Commands(window, acts, _possible(window))
@@ -65,7 +65,7 @@ def _possible(window: MainWindow) -> dict[str, Callable[[], bool]]:
 
 
 def _can_be_clicked(window: MainWindow, rig: str) -> bool:
-    return window.editor.scene.volume is not None and window.light_page.rigs.buttons[rig].isEnabled()
+    return window.editor.scene.volume is not None and window.light_page.rig_buttons[rig].isEnabled()
 
 
 def _light_by(window: MainWindow, technique: str) -> None:

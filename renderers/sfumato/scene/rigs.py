@@ -85,11 +85,26 @@ _ALL = (
         "Light from all sides: even, with shade in the hollows alone",
         (Light(name="sky", tilt=0.0, aperture=75.0),),
     ),
+    Rig(
+        "under-light",
+        "Under-light",
+        "Light from below, as from a ground glass: hollows that look down open, forms look strange",
+        (
+            Light(name="under", tilt=50.0, rotation=270.0, aperture=20.0, intensity=0.65),
+            Light(name="fill", tilt=0.0, rotation=90.0, aperture=40.0, intensity=0.12),
+        ),
+    ),
+    Rig(
+        "soft-box",
+        "Soft box",
+        "One large lamp from above: form without hard edges, as in a studio",
+        (Light(name="soft box", tilt=35.0, rotation=110.0, aperture=50.0),),
+    ),
 )
 
 
 def rigs() -> dict[str, Rig]:
-    """Return all rigs by id, in the order in which they are shown."""
+    """Return all rigs by id, in the order in which they are shown; the window shows six at first."""
     return {rig.id: rig for rig in _ALL}
 
 

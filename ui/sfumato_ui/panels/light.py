@@ -17,7 +17,7 @@ from ..generated import ChoiceBox, ParamControl, bind_slider, controls_for, labe
 from ..lamp_place import LampForm, LampMore, LampPlace, radius_slider, show_radius
 from ..lamp_tools import LampTools
 from ..lamps import LampRow
-from ..rigs_row import RigsRow
+from ..rigs_row import RigButton, RigsRow
 from ..section import Section
 from ..shadow_floor import no_floor
 from ..sliders import LabelledSlider
@@ -44,7 +44,7 @@ class LightPage(Page):
         )
         self.place, self.form, self.lamp_more = LampPlace(editor), LampForm(editor), LampMore(editor)
         self.radius = radius_slider(editor)
-        self.rigs = RigsRow(editor, thumbnails)
+        self.rigs, self.more_rigs = RigsRow(editor, thumbnails), RigsRow(editor, thumbnails, "more rigs")
         self.technique = self._technique_menu()
         self.own = Section("", "technique")
         self.more = Section("More", "light_more")
@@ -75,6 +75,11 @@ class LightPage(Page):
         self.finish()
         self._connect()
         self.refresh()
+
+    @property
+    def rig_buttons(self) -> dict[str, RigButton]:
+        """The buttons of all rigs by their ids."""
+        return {**self.rigs.buttons, **self.more_rigs.buttons}
 
     # -- building ---------------------------------------------------------------------------------
     def _dial_and_tools(self) -> QWidget:
@@ -251,10 +256,11 @@ class LightPage(Page):
             text = "This technique takes lamps with a place for parallel light from there."
         self.note.setText(text)
         self.note.setVisible(bool(text))
-        if scene.volume is None:
-            self.rigs.set_reason("Open a volume to see the rigs on it.")
-        else:
-            self.rigs.set_reason("" if technique.lit else text)
+        for row in (self.rigs, self.more_rigs):
+            if scene.volume is None:
+                row.set_reason("Open a volume to see the rigs on it.")
+            else:
+                row.set_reason("" if technique.lit else text)
 
     def _rebuild(self, title: str) -> None:
         """Make the technique's own controls: its essentials in its section, the rest under More."""
@@ -264,12 +270,14 @@ class LightPage(Page):
         self.attached.setParent(self)
         self.lamp_more.setParent(self)
         self.floor.setParent(self)
+        self.more_rigs.setParent(self)
         self.own.clear()
         self.more.clear()
         self.own.set_title(title)
         self.own.setVisible(bool(essential))
         for control in essential:
             self.own.add(control)
+        self.more.add(self.more_rigs)
         self.more.add(self.lamp_more)
         self.more.add(labelled("Lamp fixed to", self.attached))
         for control in rest:
