@@ -14,8 +14,9 @@ fragment lies next to. Lamps shade surfaces, or cast the shadows of `cone`, and 
 
 Where we differ from the paper: the directions' weights are the faces' solid angles; what gives off light does so by
 its opacity, so that what is not there does not shine; the reverse index has an entry a block (`packing`), so blocks
-of all levels can show something, but are not coarser than 4^3 unless asked; transfer functions of value and gradient
-are read from the volume itself; a preferred direction and a ray to the lamp alone are choices.
+of all levels can show something, but are not coarser than 4^3 unless asked; a ray's first step is as long in coarse
+blocks as in fine ones, so that their borders show less; a preferred direction, a ray to the lamp alone, and lamps
+beside it are choices. Values between blocks are not interpolated where a volume is shown by its blocks alone.
 
 Limits: nothing farther than the radius casts a shadow; light in coarse blocks is as coarse as they are.
 """

@@ -13,6 +13,7 @@ uniform float u_offset, u_radius;  // mm
 uniform float u_samples;         // along the ray, for the finest level
 uniform float u_gamma;           // exponent on what a sample lets through (Eq. 5)
 uniform float u_weight;          // of this direction
+uniform bool u_ends;             // light comes from the rays' ends alone (Fig. 1, left)
 uniform float u_unit_distance;   // mm
 
 layout(location = 0) out vec4 o_light;
@@ -51,19 +52,22 @@ void main() {
     if (block.w == 0u) discard;
     vec3 t = (vec3(block.xyz) + (vec3(local % res) + 0.5) / float(res)) / u_blocks_per_unit;
 
-    // 2. Steps lengthen as the block's resolution falls: d (1 + 2^(finest - level)) / 2.
-    float samples = max(1.0, floor(u_samples * 2.0 / (1.0 + float(1 << (FINEST - level))) + 0.5));
-    float step_mm = (u_radius - u_offset) / samples;
+    // 2. Steps lengthen as the block's resolution falls: d (1 + 2^(finest - level)) / 2. But not the first: what a
+    // sample brings before anything stands in its way would tell one block from the next.
+    float samples = max(2.0, floor(u_samples * 2.0 / (1.0 + float(1 << (FINEST - level))) + 0.5));
+    float length_mm = u_radius - u_offset, first = 1.0 / u_samples, rest = (1.0 - first) / (samples - 1.0);
 
     // 3. Along the ray each sample brings its share of the light that those before it let through.
-    float through = u_weight / samples;
+    float through = 1.0, share = first, at_share = 0.0;
     vec3 light = vec3(0.0), shining;
-    float dark = 1e-3 * through;
-    for (float m = 0.5; m < samples && through > dark; ++m) {
-        float tau = matter(t + u_ray * (u_offset + m * step_mm), shining);
-        light += through * (1.0 + shining);
-        through *= exp(-tau * u_gamma * step_mm);
+    for (float m = 0.0; m < samples && through > 1e-3; ++m) {
+        float tau = matter(t + u_ray * (u_offset + (at_share + 0.5 * share) * length_mm), shining);
+        light += u_weight * share * through * (1.0 + shining);
+        through *= exp(-tau * u_gamma * share * length_mm);
+        at_share += share;
+        share = rest;
     }
+    if (u_ends) light = vec3(u_weight * through);
 #if COLORED
     o_light = vec4(light, u_weight);
 #else

@@ -91,8 +91,8 @@ class Gatherer:
         units, weights = rays(frame)
         colored = gathers_emission(frame, material)
         key: tuple[Hashable, ...] = (
-            "local light", *blocks_key(frame), *reach(frame), frame.params.samples, frame.params.gamma, colored,
-            np.round(units, 9).tobytes(), np.round(weights, 9).tobytes(),
+            "local light", *blocks_key(frame), *reach(frame), frame.params.samples, frame.params.gamma,
+            frame.params.ends, colored, np.round(units, 9).tobytes(), np.round(weights, 9).tobytes(),
         )  # fmt: skip
         store = frame.device.store
         return store.get(
@@ -151,6 +151,7 @@ class Gatherer:
         transfer, volume = frame.transfer, frame.volume
         program.set(
             u_radius=radius, u_offset=offset, u_samples=float(frame.params.samples), u_gamma=frame.params.gamma,
+            u_ends=frame.params.ends,
             u_unit_distance=transfer.unit_distance or volume.unit_distance,
         )  # fmt: skip
         return program

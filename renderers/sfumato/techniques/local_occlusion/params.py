@@ -218,3 +218,14 @@ class LocalOcclusionParams(TechniqueParams):
             level="more",
         ),
     ] = True
+    ends: Annotated[
+        bool,
+        Param(
+            "Light comes from the ends of the rays alone, as a comparison: few rays give shadows with edges",
+            label="Light from ends",
+            source="Hernell2007, Fig. 1",
+            stale="light",
+            tab="light",
+            level="more",
+        ),
+    ] = False
