@@ -67,7 +67,7 @@ class Renderer:
         Parameters
         ----------
         scene : Scene
-            What to draw; it needs a volume.
+            What to draw; it needs a volume, or geometry and a technique that draws it.
         size : (int, int)
             Width and height in pixels, before the quality's scale.
         part : (int, int, int, int), optional
@@ -79,8 +79,9 @@ class Renderer:
         SceneError
             If there is nothing to draw or the size is not possible.
         """
-        if scene.volume is None:
-            raise SceneError("volume", None, "a scene needs a volume to be drawn")
+        if scene.volume is None and not (scene.geometry and technique_for(scene.technique).geometry):
+            needed = "a volume" if not scene.geometry else "a volume, or the technique combined,"
+            raise SceneError("volume", None, f"a scene needs {needed} to be drawn")
         width, height = (int(v) for v in (part[2:] if part else size))
         limit = min(MAX_SIDE, self.device.max_texture_2d)
         if not (1 <= width <= limit and 1 <= height <= limit):
@@ -282,7 +283,7 @@ def render(scene: Scene, size: tuple[int, int] = (512, 512), *, linear: bool = F
     Raises
     ------
     SceneError
-        If the scene has no volume or the size is not possible.
+        If the scene has nothing to draw or the size is not possible.
     GpuError
         If the device cannot do it.
     """

@@ -163,7 +163,7 @@ def test_full_tiles_cover_every_visible_block(lattice: Lattice, seed: int) -> No
     low, high = np.append(stack.low, stack.z0 + stack.step), np.append(stack.high, far)
     half = np.array([1.5, 1.0, 2.0])
     centers = random.uniform(low + half, high - half, (5, 3))
-    tiles = list_tiles(lattice, centers, half, 0.1, 1)
+    tiles = list_tiles(lattice, [(centers, half)], 0.1, 1)
     for _ in range(40):
         point = random.choice(centers) + random.uniform(-half, half)
         slab = int((point[2] - stack.z0) // stack.step)
@@ -179,5 +179,5 @@ def test_full_tiles_cover_every_visible_block(lattice: Lattice, seed: int) -> No
 
 def test_no_visible_block_no_tile() -> None:
     lattice = Lattice.over(a_stack()[0], 1.0, 0.8, 135, False, (0, 0), 1)
-    tiles = list_tiles(lattice, np.empty((0, 3)), np.ones(3), 0.1, 0)
+    tiles = list_tiles(lattice, [(np.empty((0, 3)), np.ones(3))], 0.1, 0)
     assert len(tiles.tiles) == 0

@@ -17,6 +17,7 @@ from .store import Store
 GL_FRAMEBUFFER = 0x8D40
 GL_COLOR_ATTACHMENT0 = 0x8CE0
 GL_COLOR = 0x1800
+GL_UNSIGNED_INT = 0x1405
 GL_SYNC_GPU_COMMANDS_COMPLETE = 0x9117
 GL_SYNC_FLUSH_COMMANDS_BIT = 0x0001
 GL_TIMEOUT_EXPIRED = 0x911B
@@ -62,6 +63,7 @@ class Device:
         self._get_error = self._function("glGetError", u32)
         self._clear_buffer = self._function("glClearBufferfv", None, u32, i32, ptr)
         self._draw_arrays = self._function("glDrawArrays", None, u32, i32, i32)
+        self._draw_elements = self._function("glDrawElements", None, u32, i32, u32, ptr)
 
     def _function(self, name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
         # moderngl has no public loader; this attribute is the one place where we rely on a private one.
@@ -94,6 +96,16 @@ class Device:
         """Draw a range of a vertex array without holding Python's lock: a driver may compile here, for seconds."""
         array.render(moderngl.TRIANGLES, vertices=0)  # binds program and array
         self._draw_arrays(moderngl.TRIANGLES, first, count)
+
+    def draw_points(self, array: Any, first: int, count: int) -> None:
+        """Draw a range of a vertex array's vertices as points, as `draw_triangles` does."""
+        array.render(moderngl.POINTS, vertices=0)
+        self._draw_arrays(moderngl.POINTS, first, count)
+
+    def draw_indexed(self, array: Any, first: int, count: int) -> None:
+        """Draw a range of a vertex array's indices (32 bit) as triangles, as `draw_triangles` does."""
+        array.render(moderngl.TRIANGLES, vertices=0)
+        self._draw_elements(moderngl.TRIANGLES, count, GL_UNSIGNED_INT, 4 * first)
 
     def wait(self) -> None:
         """Wait until all that was asked of the GPU is done, without holding Python's global lock.

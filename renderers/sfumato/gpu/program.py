@@ -123,6 +123,31 @@ class Program:
         self._take_units()
         self.device.draw_triangles(self._mesh, first, count)
 
+    def draw_buffers(
+        self, vertices: Any, layout: str, names: tuple[str, ...], indices: Any, first: int, count: int
+    ) -> None:
+        """Draw a range of indexed triangles, or of points where there are no indices.
+
+        Parameters
+        ----------
+        vertices : buffer
+            Interleaved attributes.
+        layout : str
+            Their formats, as in moderngl: ``"3f4 4f2"``.
+        names : tuple of str
+            What the vertex shader calls them.
+        indices : buffer or None
+            Unsigned, 32 bit.
+        """
+        self._take_units()
+        array = self.device.ctx.vertex_array(
+            self._program, [(vertices, layout, *names)], indices, index_element_size=4
+        )
+        try:
+            (self.device.draw_points if indices is None else self.device.draw_indexed)(array, first, count)
+        finally:
+            array.release()
+
     def release(self) -> None:
         """Free the GPU objects."""
         if self._mesh is not None:

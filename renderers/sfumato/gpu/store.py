@@ -109,6 +109,10 @@ class Store:
         self.make_room(key)
         return thing
 
+    def holds(self, key: Hashable) -> bool:
+        """Tell whether something is kept under a key."""
+        return key in self._items
+
     def make_room(self, newest: Hashable = None) -> None:
         """Free the oldest things until the budget is kept, but nothing that a frame needs."""
         for key in [key for key in self._items if key not in self._pinned and key != newest]:

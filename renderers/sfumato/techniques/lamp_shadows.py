@@ -72,7 +72,7 @@ class LampShadows:
         stack = Stack.through(View.of(frame.camera), crop_corners(frame), frame.step, frame.jitter)
         set_view(program, frame, stack)
         apertures = [light.aperture for light in frame.scene.active_lights]
-        program.set(**_lamp_uniforms(frame, lamps, apertures))
+        program.set(**lamp_uniforms(frame, lamps, apertures))
         program.bind(**{f"u_light{k}": texture for k, texture in enumerate(lamps.textures)})
         self._slab_term.bind(program, frame, [tilt for tilt, _ in lamps.angles], apertures)
 
@@ -83,7 +83,7 @@ class LampShadows:
         self._slab_term.release()
 
 
-def _lamp_uniforms(frame: Frame, lamps: Lamps, apertures: list[float]) -> dict[str, Any]:
+def lamp_uniforms(frame: Frame, lamps: Lamps, apertures: list[float]) -> dict[str, Any]:
     """Return where the ray caster finds each lamp's light, and its way there."""
     to_light, length = np.zeros((4, 3), dtype=np.float32), np.zeros(4, dtype=np.float32)
     matrices, rear = np.zeros((4, 4, 4), dtype=np.float32), np.zeros(4, dtype=np.int32)

@@ -3,12 +3,17 @@
 // DIRECTIONS  number of directions, a multiple of 4: four in each state
 // LAST        DIRECTIONS / 4: the attachment after the states
 // HOLLOW      nothing stands in these tiles: the light only passes
+// VOLUME      the volume casts shadows
+// GEOMETRY    geometry does
 //
 // The states hold the directions' transmittances behind the slab before. The grid's border is always clear, so that no fetch leaves it.
-#if !HOLLOW
+#if !HOLLOW && VOLUME
 #include "volume"
 #include "clip"
 #include "transfer"
+#endif
+#if !HOLLOW && GEOMETRY
+#include "cover"
 #endif
 
 uniform sampler2D u_state0, u_state1, u_state2, u_state3, u_state4, u_state5;
@@ -51,6 +56,12 @@ void main() {
 #if HOLLOW
     #define PASS(state, group) arriving(state, 4 * group)
 #else
+#if GEOMETRY
+    vec2 passed = cover_passes(ivec2(gl_FragCoord.xy));
+#else
+    const vec2 passed = vec2(1.0);
+#endif
+#if VOLUME
     vec3 enter = u_enter * vec3(gl_FragCoord.xy, 1.0);
     vec3 leave = u_leave * vec3(gl_FragCoord.xy, 1.0);
     vec2 range = kept_range(enter, leave - enter, vec2(0.0, 1.0));
@@ -61,8 +72,11 @@ void main() {
     float tau = classify_extinction(s0, s1);
 #endif
     float absorbed = tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
+#else
+    const float absorbed = 0.0;
+#endif
     // exp(-absorbed * secant) of all directions from three of them, by Lagrange's polynomial.
-    vec3 left = exp(-absorbed * u_secants);
+    vec3 left = exp(-absorbed * u_secants) * passed.x;
     #define PASS(state, group) (arriving(state, 4 * group) * (left.x * u_weight0[group] + left.y * u_weight1[group] + left.z * u_weight2[group]))
 #endif
     #define TAKE(result, state, group) result = PASS(state, group); sum += result * u_share[group];
@@ -86,7 +100,7 @@ void main() {
 #if HOLLOW
     const float open = 1.0;
 #else
-    float open = max(exp(-2.0 * absorbed), LEAST);
+    float open = max(exp(-2.0 * absorbed) * passed.y * passed.y, LEAST);
 #endif
     o_light = vec2(dot(sum, vec4(1.0)) * open, open);
 }

@@ -95,6 +95,38 @@ def shares_of(view: View, frame: Frame, offsets: np.ndarray, secants: np.ndarray
     return np.asarray(weights / weights.sum())
 
 
+#: Centres of blocks in which something stands along a view's axes in mm, shape (n, 3), and half their extents.
+Blocks = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Casters:
+    """What else than the volume stands in a lamp's way, and whether the volume does.
+
+    Attributes
+    ----------
+    cover : texture or None
+        How much of each texel geometry covers, the slabs side by side (`combined.cover`).
+    columns : int
+        Slabs in a row of it.
+    opacity : float
+        What geometry that covers a texel takes away.
+    blocks : tuple of (centres, half extents)
+        Where geometry stands.
+    volume : bool
+        Whether the volume casts shadows.
+    """
+
+    cover: Any = None
+    columns: int = 1
+    opacity: float = 1.0
+    blocks: tuple[Blocks, ...] = ()
+    volume: bool = True
+
+
+VOLUME_ALONE = Casters()
+
+
 @dataclass(frozen=True)
 class LightGrid:
     """Where a lamp's texture lies, and the steps of its directions.
@@ -154,11 +186,13 @@ class LightGrid:
             behind -= steps[slab]
         return steps
 
-    def tiles(self, frame: Frame, material: Material) -> TileLists:
+    def tiles(self, frame: Frame, material: Material, casters: Casters = VOLUME_ALONE) -> TileLists:
         """Return what has to be swept."""
-        centers, half = blocks_along(self.lattice.stack.view, frame, material)
+        blocks = list(casters.blocks)
+        if casters.volume:
+            blocks.append(blocks_along(self.lattice.stack.view, frame, material))
         slope = float(np.hypot(*self.offsets.T).max())
-        return list_cone_tiles(self.lattice, centers, half, slope, math.ceil(MAX_NEAR_TEXELS) + 1)
+        return list_cone_tiles(self.lattice, blocks, slope, math.ceil(MAX_NEAR_TEXELS) + 1)
 
 
 def texel_of(frame: Frame, aperture: float) -> float:
@@ -169,10 +203,26 @@ def texel_of(frame: Frame, aperture: float) -> float:
     return float(frame.volume.min_spacing / resolution * widened * frame.quality.light)
 
 
-def grid_for(frame: Frame, material: Material, angles: tuple[float, float], aperture: float) -> LightGrid:
-    """Plan the sweep of a lamp at (tilt, rotation) in degrees as the camera sees it."""
+def grid_for(
+    frame: Frame,
+    material: Material,
+    angles: tuple[float, float],
+    aperture: float,
+    corners: np.ndarray | None = None,
+    more: Hashable = None,
+) -> LightGrid:
+    """Plan the sweep of a lamp at (tilt, rotation) in degrees as the camera sees it.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (n, 3), optional
+        World mm; what the grid reaches over, instead of what is visible of the volume.
+    more : hashable
+        What the result depends on besides, for its key.
+    """
     view = view_of_light(frame, *angles)
-    corners = visible_corners(frame, material)
+    if corners is None:
+        corners = visible_corners(frame, material)
     assert corners is not None
     extent = np.ptp(view.coordinates(corners), axis=0)
     longest = frame.device.max_texture_3d - 64  # less what the border may take
@@ -186,7 +236,7 @@ def grid_for(frame: Frame, material: Material, angles: tuple[float, float], aper
     lattice = Lattice.over(stack, texel, 0.0, 0.0, False, frame.lattice_jitter, reach)
     key = (
         material.opacity_key, frame.scene.clip, frame.scene.crop, np.round(view.axes, 9).tobytes(),
-        aperture, texel, frame.index, np.round(shares, 9).tobytes(),
+        aperture, texel, frame.index, np.round(shares, 9).tobytes(), more,
     )  # fmt: skip
     return LightGrid(lattice, offsets, secants, shares, key)
 
@@ -201,6 +251,16 @@ def secant_uniforms(secants: np.ndarray) -> dict[str, Any]:
     ]
     packed = {f"u_weight{i}": w.astype(np.float32).reshape(-1, 4) for i, w in enumerate(weights)}
     return {"u_secants": tuple(nodes.tolist()), **packed}
+
+
+def cover_corners(slab: int, columns: int, size: tuple[int, int], direction: int = 1) -> np.ndarray:
+    """Return where in a picture of coverage a slab lies and the two that light met before; -1 where there is none."""
+    corners = np.full((3, 2), -1, np.int32)
+    for k in range(3):
+        at = slab - direction * k
+        if at >= 0:
+            corners[k] = at % columns * size[0], at // columns * size[1]
+    return corners
 
 
 class LightSweeper:
@@ -221,10 +281,17 @@ class LightSweeper:
         texture.repeat_x = texture.repeat_y = texture.repeat_z = False
         return texture
 
-    def sweep(self, frame: Frame, material: Material, grid: LightGrid, texture: Any) -> Iterator[float]:
+    def sweep(
+        self,
+        frame: Frame,
+        material: Material,
+        grid: LightGrid,
+        texture: Any,
+        casters: Casters = VOLUME_ALONE,
+    ) -> Iterator[float]:
         """Fill a lamp's texture, yielding the share done after each bounded piece."""
         self._make_states(grid.lattice.size)
-        pair = self._prepare(frame, material, grid)
+        pair = self._prepare(frame, material, grid, casters)
         self._targets[0].use(texture, 0)
         self._targets[0].fbo.clear(1.0, 1.0, 1.0, 1.0)
         for slab in range(grid.lattice.stack.count):
@@ -237,6 +304,8 @@ class LightSweeper:
             else:
                 target.clear_layer(1.0)
             for program, span in zip(pair, self._lists.of_slab(slab), strict=True):
+                if casters.cover is not None:
+                    program.set(u_cover_at=cover_corners(slab, casters.columns, grid.lattice.size))
                 self._draw(program, source, grid, slab, span)
             if slab % PASSES_PER_PIECE == 0:
                 self.device.wait()
@@ -258,16 +327,22 @@ class LightSweeper:
         )
         program.draw_rects(count)
 
-    def _prepare(self, frame: Frame, material: Material, grid: LightGrid) -> tuple[Program, Program]:
+    def _prepare(
+        self, frame: Frame, material: Material, grid: LightGrid, casters: Casters
+    ) -> tuple[Program, Program]:
         """Set up the programs of full and of hollow tiles."""
-        lattice = grid.lattice
-        self._lists = grid.tiles(frame, material)
+        lattice, covered = grid.lattice, casters.cover is not None
+        self._lists = grid.tiles(frame, material, casters)
         self._tiles.upload(self._lists)
         self._to_texture = texture_from_view(frame, lattice.stack)
         number = (("DIRECTIONS", DIRECTIONS), ("LAST", DIRECTIONS // 4))
-        full = self._programs.get((*number, ("HOLLOW", 0), *material_defines(material)))
+        kind = (("HOLLOW", 0), ("GEOMETRY", int(covered)), ("VOLUME", int(casters.volume)))
+        full = self._programs.get((*number, *kind, *material_defines(material)))
         bind_material(full, material, frame)
-        hollow = self._programs.get((*number, ("HOLLOW", 1)))
+        if covered:
+            full.bind(u_cover=casters.cover)
+            full.set(u_opacity=casters.opacity)
+        hollow = self._programs.get((*number, ("HOLLOW", 1), ("GEOMETRY", 0), ("VOLUME", 0)))
         inner, size = lattice.border - PAD, lattice.size
         for program in (full, hollow):
             program.set(

@@ -9,6 +9,8 @@
 // LOCAL      the lamps' light is combined with that of each point's neighbourhood. 0: not, 1: product, 2: mix
 // ADAPTIVE   longer steps where blocks are coarse
 // EMISSION   tissue gives off light
+// SURFACE    rays end at opaque surfaces that were drawn before
+// GEOMETRY   geometry casts shadows on the volume
 #include "ray"
 #include "volume"
 #include "clip"
@@ -43,6 +45,11 @@ uniform int u_rear[4];               // 1: behind the subject, its light enters 
 #endif
 #if LOCAL > 0
 #include "local_light"
+#endif
+
+#if SURFACE
+uniform sampler2D u_surface;         // linear depth in a; wider than the picture by u_margin on each side
+uniform int u_margin;
 #endif
 
 layout(location = 0) out vec4 o_color;
@@ -114,7 +121,12 @@ void main() {
     float secant = length(ray.direction);
     vec3 a = (u_texture_from_world * vec4(ray.origin, 1.0)).xyz;
     vec3 b = (u_texture_from_world * vec4(ray.direction, 0.0)).xyz;
-    vec2 range = kept_range(a, b, vec2(u_near, u_far));
+    float end = u_far;
+#if SURFACE
+    // The last step before a surface is a part of a step (Schott2012, Alg. 2).
+    end = min(end, texelFetch(u_surface, ivec2(gl_FragCoord.xy) + u_margin, 0).a);
+#endif
+    vec2 range = kept_range(a, b, vec2(u_near, end));
     if (range.x >= range.y) return;
 
 #if SLICES

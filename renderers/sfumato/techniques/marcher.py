@@ -158,6 +158,8 @@ class Variant:
     local: int = 0
     joined: bool = False
     adaptive: bool = False
+    surface: bool = False
+    geometry: bool = False
 
 
 class Marcher:
@@ -176,6 +178,7 @@ class Marcher:
             ("NEAR", variant.near), ("SHADING", variant.shading), ("SPECULAR", int(variant.specular)),
             ("FACING", int(variant.facing)), ("LOCAL", variant.local), ("JOINED", int(variant.joined)),
             ("ADAPTIVE", int(variant.adaptive)),
+            ("SURFACE", int(variant.surface)), ("GEOMETRY", int(variant.geometry)),
             ("EMISSION", int(material.tables.emits)),
             *material_defines(material),
         )  # fmt: skip
@@ -221,6 +224,17 @@ class Marcher:
         """Make pieces smaller at once where they take too long, and larger by and by."""
         wanted = pixels * PIECE_SECONDS / max(seconds, 1e-6)
         self._piece = min(max(wanted, 256.0), self._piece * 2, 1e9)
+
+    def blank(self) -> None:
+        """Empty the picture, where there is nothing to march through."""
+        assert self._pair is not None
+        self._pair[0].clear()
+
+    @property
+    def picture(self) -> Any:
+        """The texture of what was drawn so far: linear RGB, premultiplied, and opacity."""
+        assert self._pair is not None
+        return self._pair[0].texture
 
     def finish(self, frame: Frame) -> None:
         """Copy what was drawn to the frame's target."""

@@ -86,6 +86,7 @@ class Technique:
 #: One line a folder; the order is that of menus and tables.
 FOLDERS = (
     "cone",
+    "combined",
     "multidirectional",
     "extinction",
     "local_occlusion",

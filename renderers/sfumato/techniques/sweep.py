@@ -89,7 +89,7 @@ def lamps_for(
         angles, apertures, moments, stencils, rhythm, strict=True
     ):
         lattice = Lattice.over(stack, texel, m.mean, rotation, tilt > 90, frame.lattice_jitter, reach)
-        tiles = list_tiles(lattice, centers, half, max(m.along, m.across) * area, near_slabs(frame))
+        tiles = list_tiles(lattice, [(centers, half)], max(m.along, m.across) * area, near_slabs(frame))
         lamps.append(Lamp(lattice, stencil, effective_secant(tilt, aperture), tiles, every))
     return tuple(lamps)
 

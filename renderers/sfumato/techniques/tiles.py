@@ -10,6 +10,7 @@ the footprint's blur, by which dirty and needed tiles are dilated.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,23 +53,21 @@ class TileLists:
 
 
 def list_tiles(
-    lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, variance: float, ahead: int
+    lattice: Lattice, blocks: Sequence[tuple[np.ndarray, np.ndarray]], variance: float, ahead: int
 ) -> TileLists:
     """Sort the tiles of a lattice.
 
     Parameters
     ----------
-    centers : ndarray, shape (n, 3)
-        Centres of the blocks in which something is visible: lateral x, y and depth in mm.
-    half_sizes : ndarray, shape (3,)
-        Half the extent of a block along the same axes.
+    blocks : sequence of (centers, half_sizes)
+        Sets of blocks in which something stands: their centres, shape (n, 3): lateral x, y and depth in mm,
+        and half the extent of a block along the same axes, shape (3,).
     variance : float
         Blur of one slab, in texels squared, in its widest direction.
     ahead : int
         Slabs, towards the light, from which the ray caster reads besides a sample's own.
     """
-    groups = lattice.stack.count // GROUP + 1
-    full, low = _full_tiles(lattice, centers, half_sizes, groups, ahead)
+    full, low = _full_of_all(lattice, blocks, ahead)
     spread = math.ceil(TAIL * math.sqrt(lattice.stack.count * variance) / TILE)
     near = maximum_filter(full, size=(1, 2 * spread + 1, 2 * spread + 1))
     along = near[::-1] if lattice.rear else near
@@ -81,14 +80,26 @@ def list_tiles(
 
 
 def list_cone_tiles(
-    lattice: Lattice, centers: np.ndarray, half_sizes: np.ndarray, slope: float, ahead: int
+    lattice: Lattice, blocks: Sequence[tuple[np.ndarray, np.ndarray]], slope: float, ahead: int
 ) -> TileLists:
-    """Sort the tiles of a lattice through which light spreads as a cone: by `slope` texels a slab to each side."""
-    groups = lattice.stack.count // GROUP + 1
-    full, low = _full_tiles(lattice, centers, half_sizes, groups, ahead)
+    """Sort the tiles of a lattice through which light spreads as a cone: by `slope` texels a slab to each side.
+
+    ``blocks`` are sets of centres and half sizes, as in `list_tiles`.
+    """
+    full, low = _full_of_all(lattice, blocks, ahead)
     near = maximum_filter(full, size=(1, 3, 3))
     active = _widening(near, slope) & _widening(near[::-1], slope)[::-1]
     return _lists(full, active & ~full, low)
+
+
+def _full_of_all(
+    lattice: Lattice, blocks: Sequence[tuple[np.ndarray, np.ndarray]], ahead: int
+) -> tuple[np.ndarray, tuple[int, int]]:
+    """Return `_full_tiles` of several sets of blocks."""
+    groups = lattice.stack.count // GROUP + 1
+    sets = blocks or [(np.empty((0, 3)), np.zeros(3))]
+    found = [_full_tiles(lattice, centers, half, groups, ahead) for centers, half in sets]
+    return np.logical_or.reduce([full for full, _ in found]), found[0][1]
 
 
 def _widening(tiles: np.ndarray, slope: float) -> np.ndarray:

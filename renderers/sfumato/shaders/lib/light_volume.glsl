@@ -1,6 +1,7 @@
 // Light from lamps' textures (the light prepass), and what a slab returns of it.
 //
 // LIGHTS     number of lights
+// GEOMETRY   geometry casts shadows on the volume
 // NEAR       samples on the way to a lamp's texture, in which the ray caster itself looks for what stands close by
 
 uniform sampler3D u_light0, u_light1, u_light2, u_light3;    // visibility times openness, and openness; one lamp each
@@ -23,6 +24,31 @@ float near_field(int l, vec3 t, float value) {
     return exp(-depth * u_near_length[l]);
 }
 
+#if GEOMETRY
+// How much of each texel geometry covers, slab by slab of a lamp's lattice, the slabs side by side (combined/cover.py).
+uniform sampler2D u_cover0, u_cover1, u_cover2, u_cover3;
+uniform ivec2 u_cover_size[4];           // texels of a slab
+uniform int u_cover_columns[4];          // slabs in a row
+uniform float u_cover_slabs[4];          // number of slabs
+uniform float u_cover_way[4];            // slabs between a sample and where its light is asked for
+uniform float u_cover_opacity;
+
+// Light that geometry between a point of a lamp's texture and the place where its light is asked for lets through.
+float near_cover(sampler2D cover, int l, vec3 at) {
+    float s = at.z * (u_cover_slabs[l] + 1.0) - 0.5, begin = max(s - u_cover_way[l], 0.0), covered = 0.0;
+    vec2 size = vec2(u_cover_size[l]), texel = clamp(at.xy * size, vec2(0.5), size - 0.5);
+    vec2 picture = vec2(textureSize(cover, 0));
+    for (int j = int(begin); float(j) < min(s, u_cover_slabs[l]); ++j) {
+        vec2 corner = vec2(j % u_cover_columns[l], j / u_cover_columns[l]) * size;
+        covered += textureLod(cover, (corner + texel) / picture, 0.0).r * (min(s, float(j + 1)) - max(begin, float(j)));
+    }
+    return 1.0 - u_cover_opacity * min(covered, 1.0);
+}
+#define NEAR_COVER(l, at) near_cover(u_cover##l, l, at)
+#else
+#define NEAR_COVER(l, at) 1.0
+#endif
+
 // A lamp's visibility. Texels that stand in matter are dark by it; so they count less the less open they are, and a
 // surface that light grazes is not striped by what lies below it.
 float light_at(sampler3D light, vec3 at) {
@@ -30,24 +56,26 @@ float light_at(sampler3D light, vec3 at) {
     return both.r / both.g;
 }
 
-float seen(sampler3D light, int l, Meeting front, Meeting back) {
-    vec3 t = u_rear[l] == 1 ? back.t : front.t;
-    vec3 at = (u_light_from_texture[l] * vec4(t + u_to_light[l], 1.0)).xyz;
-    return near_field(l, t, u_rear[l] == 1 ? back.value : front.value) * light_at(light, at);
-}
+// Where a sample's light is asked for in a lamp's texture, and where the sample itself lies in it.
+vec3 asked_at(int l, vec3 t) { return (u_light_from_texture[l] * vec4(t + u_to_light[l], 1.0)).xyz; }
+vec3 place_in(int l, vec3 t) { return (u_light_from_texture[l] * vec4(t, 1.0)).xyz; }
 
+#ifndef SURFACES
 // Visibility of all lights at slab i, for what a view ray meets at its two planes.
 void visibilities(int i, Meeting front, Meeting back, out float visible[4]) {
+    #define LIGHT_IN(l) (u_rear[l] == 1 ? back.t : front.t)
+    #define SEEN(l) visible[l] = near_field(l, LIGHT_IN(l), u_rear[l] == 1 ? back.value : front.value) * light_at(u_light##l, asked_at(l, LIGHT_IN(l))) * NEAR_COVER(l, place_in(l, LIGHT_IN(l)));
 #if LIGHTS > 0
-    visible[0] = seen(u_light0, 0, front, back);
+    SEEN(0)
 #endif
 #if LIGHTS > 1
-    visible[1] = seen(u_light1, 1, front, back);
+    SEEN(1)
 #endif
 #if LIGHTS > 2
-    visible[2] = seen(u_light2, 2, front, back);
+    SEEN(2)
 #endif
 #if LIGHTS > 3
-    visible[3] = seen(u_light3, 3, front, back);
+    SEEN(3)
 #endif
 }
+#endif

@@ -1,0 +1,122 @@
+"""Geometry on the GPU: each shown geometry's mesh in buffers that the device's store keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Hashable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...gpu import Device
+from ...scene import Geometry, Scene
+from ...scene.shapes import Lines, Mesh
+from ..frame import Frame
+
+#: A vertex: place (mm, from the mesh's middle), unit normal, linear RGB. 28 bytes.
+VERTEX = np.dtype([("p", "<f4", 3), ("n", "<f2", 4), ("c", "<f2", 4)])
+LAYOUT = "3f4 4f2 4f2"
+#: Vertices that are packed between two looks at whether a newer scene is there.
+CHUNK = 1 << 19
+
+
+@dataclass
+class MeshBuffers:
+    """A mesh on the GPU.
+
+    Attributes
+    ----------
+    middle : ndarray, shape (3,)
+        World mm; the buffer's places are relative to it, so that large coordinates cost no precision.
+    count : int
+        Indices: three a triangle.
+    """
+
+    vertices: Any
+    indices: Any
+    middle: np.ndarray
+    bounds: np.ndarray
+    count: int
+
+    @property
+    def size(self) -> int:
+        """Bytes on the GPU."""
+        return int(self.vertices.size + self.indices.size)
+
+    def release(self) -> None:
+        """Free the buffers."""
+        self.vertices.release()
+        self.indices.release()
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A geometry that is drawn.
+
+    Attributes
+    ----------
+    clipped : bool
+        Whether clip planes or a crop box cut it.
+    """
+
+    geometry: Geometry
+    mesh: Mesh
+    clipped: bool
+
+    @property
+    def key(self) -> Hashable:
+        """Equal for what is drawn alike in one scene."""
+        return self.geometry.mesh_key, self.clipped
+
+    @property
+    def tubes(self) -> bool:
+        """Whether its surface was swept along lines, and so is closed."""
+        return isinstance(self.geometry.shape, Lines)
+
+
+def shown_geometry(scene: Scene) -> tuple[Shown, ...]:
+    """Return what is to be drawn of a scene's geometry, with its meshes; what has no triangle is left out."""
+    from ...geometry import mesh_of
+
+    cuts = any(plane.enabled for plane in scene.clip) or not _whole(scene)
+    found = ((g, mesh_of(g)) for g in scene.geometry if g.visible)
+    return tuple(Shown(g, mesh, cuts and g.clipped) for g, mesh in found if len(mesh.triangles))
+
+
+def _whole(scene: Scene) -> bool:
+    return scene.volume is None or (
+        min(scene.crop.low) <= 0 and max(scene.crop.low) <= 0 and min(scene.crop.high) >= 1
+    )
+
+
+def upload_meshes(frame: Frame, shown: tuple[Shown, ...]) -> Generator[float, None, tuple[MeshBuffers, ...]]:
+    """Return the buffers of what is drawn, uploading what is not there yet."""
+    store, device, buffers = frame.device.store, frame.device, []
+    for item in shown:
+        key = ("geometry", item.geometry.mesh_key)
+        packed = {}
+        if not store.holds(key):
+            packed["data"] = yield from _pack(item.mesh)
+        buffers.append(
+            store.get(key, lambda m=item.mesh, p=packed: _upload(device, m, p["data"]), lambda b: b.size)  # type: ignore[misc]
+        )
+    return tuple(buffers)
+
+
+def _pack(mesh: Mesh) -> Generator[float, None, np.ndarray]:
+    """Interleave a mesh's arrays."""
+    data, middle = np.zeros(len(mesh.points), VERTEX), mesh.bounds.mean(axis=0)
+    for first in range(0, len(data), CHUNK):
+        part = slice(first, first + CHUNK)
+        data["p"][part] = mesh.points[part] - middle
+        data["n"][part, :3] = mesh.normals[part]
+        data["c"][part, :3] = mesh.colors[part]
+        yield 0.0
+    return data
+
+
+def _upload(device: Device, mesh: Mesh, data: np.ndarray) -> MeshBuffers:
+    with device.checked(f"a mesh of {len(mesh.triangles)} triangles"):
+        vertices = device.ctx.buffer(data)
+        indices = device.ctx.buffer(np.ascontiguousarray(mesh.triangles, dtype=np.uint32))
+    return MeshBuffers(vertices, indices, mesh.bounds.mean(axis=0), mesh.bounds, mesh.triangles.size)

@@ -1,0 +1,121 @@
+"""The surfaces' picture (the paper's G-buffer), rasterised once a frame; wider than the frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ...gpu import Device, Program, ShaderSource
+from ...gpu.program import PACKAGE
+from ...gpu.surface_target import SurfaceTarget
+from ..frame import Frame
+from ..marcher import near_depth
+from .meshes import LAYOUT, MeshBuffers, Shown
+from .surfels import kept_uniforms
+
+#: Indices that are drawn between two looks at whether a newer scene is there.
+PIECE = 3 << 19
+_FOLDER = "techniques/combined/"
+
+
+class SurfacePainter:
+    """Draws meshes into a `SurfaceTarget`."""
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        vertex = (PACKAGE / _FOLDER / "surface.vert.glsl").read_text(encoding="utf-8")
+        self._programs = [
+            Program(
+                device, ShaderSource(_FOLDER + "surface.frag.glsl", (("CUT", cut), ("CLIPS", cut))), vertex
+            )
+            for cut in (0, 1)
+        ]
+        self.target: SurfaceTarget | None = None
+
+    def draw(
+        self, frame: Frame, shown: tuple[Shown, ...], meshes: tuple[MeshBuffers, ...], margin: int
+    ) -> Iterator[float]:
+        """Draw what is shown, with `margin` pixels more on each side, yielding after each bounded piece."""
+        target = self._target_of((frame.size[0] + 2 * margin, frame.size[1] + 2 * margin))
+        target.clear()
+        uniforms = _camera(frame, meshes, margin)
+        for item, mesh in zip(shown, meshes, strict=True):
+            program = self._programs[int(item.clipped)]
+            program.set(**uniforms, **_place(frame, mesh))
+            if item.clipped:
+                matrix = frame.volume.texture_from_world.T.ravel().tolist()
+                program.set(u_texture_from_world=tuple(matrix), **kept_uniforms(frame))
+            for first in range(0, mesh.count, PIECE):
+                self._piece(target, program, mesh, first)
+                yield (first + PIECE) / mesh.count
+
+    def _piece(self, target: SurfaceTarget, program: Program, mesh: MeshBuffers, first: int) -> None:
+        target.begin()
+        try:
+            program.draw_buffers(
+                mesh.vertices, LAYOUT, ("a_p", "a_normal", "a_color"), mesh.indices, first,
+                min(PIECE, mesh.count - first),
+            )  # fmt: skip
+        finally:
+            target.end()
+        self.device.wait()
+
+    def _target_of(self, size: tuple[int, int]) -> SurfaceTarget:
+        if self.target is None or self.target.size != size:
+            self._release_target()
+            self.target = SurfaceTarget(self.device, size)
+        return self.target
+
+    def release(self) -> None:
+        """Free the GPU objects."""
+        for program in self._programs:
+            program.release()
+        self._release_target()
+
+    def _release_target(self) -> None:
+        if self.target is not None:
+            self.target.release()
+        self.target = None
+
+
+def depth_range(frame: Frame, meshes: tuple[MeshBuffers, ...]) -> tuple[float, float]:
+    """Return the nearest and farthest depth in mm that meshes can have before the camera."""
+    basis = frame.camera.basis()
+    depths = [
+        (_box(mesh.bounds) - frame.camera.position) @ np.asarray(basis.forward) for mesh in meshes
+    ]  # fmt: skip
+    low, high = (float(f(depths)) for f in (np.min, np.max))
+    room = 1e-3 * max(high - low, 1e-3)
+    low, high = max(low - room, near_depth(frame)), high + room
+    return low, max(high, low + room)
+
+
+def _box(bounds: np.ndarray) -> np.ndarray:
+    return np.array(
+        [[bounds[i, 0], bounds[j, 1], bounds[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+    )
+
+
+def _camera(frame: Frame, meshes: tuple[MeshBuffers, ...], margin: int) -> dict[str, Any]:
+    camera, (width, height) = frame.camera, frame.whole_size
+    basis = camera.basis()
+    return {
+        "u_eye": camera.position, "u_forward": basis.forward,
+        "u_half": camera.half_extent(width / height), "u_center": camera.window_center,
+        "u_parallel": camera.parallel_projection, "u_size": (float(width), float(height)),
+        "u_corner": (float(frame.corner[0] - margin), float(frame.corner[1] - margin)),
+        "u_pixel_jitter": frame.pixel_jitter,
+        "u_target": (float(frame.size[0] + 2 * margin), float(frame.size[1] + 2 * margin)),
+        "u_depth_range": depth_range(frame, meshes),
+    }  # fmt: skip
+
+
+def _place(frame: Frame, mesh: MeshBuffers) -> dict[str, Any]:
+    basis = frame.camera.basis()
+    axes = np.array([basis.right, basis.up, basis.forward])
+    return {
+        "u_axes": tuple(axes.T.ravel().tolist()), "u_middle": tuple(mesh.middle.tolist()),
+        "u_middle_from_eye": tuple((axes @ (mesh.middle - frame.camera.position)).tolist()),
+    }  # fmt: skip
