@@ -35,7 +35,8 @@ class SurfaceTarget:
             self.color = _picture(device, size, "f2")
             self.shape = _picture(device, size, "f4")
             self.depth = device.ctx.depth_renderbuffer(size)
-            self.fbo = device.ctx.framebuffer([self.color, self.shape], self.depth)
+        # Outside: moderngl leaves an error behind when it makes a framebuffer.
+        self.fbo = device.ctx.framebuffer([self.color, self.shape], self.depth)
 
     def clear(self) -> None:
         """Empty it."""

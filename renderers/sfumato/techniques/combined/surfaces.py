@@ -87,7 +87,7 @@ def depth_range(frame: Frame, meshes: tuple[MeshBuffers, ...]) -> tuple[float, f
         (_box(mesh.bounds) - frame.camera.position) @ np.asarray(basis.forward) for mesh in meshes
     ]  # fmt: skip
     low, high = (float(f(depths)) for f in (np.min, np.max))
-    room = 1e-3 * max(high - low, 1e-3)
+    room = 1e-3 * max(high - low, abs(low), abs(high), 1e-3)  # flat things too have room in 32 bits
     low, high = max(low - room, near_depth(frame)), high + room
     return low, max(high, low + room)
 
