@@ -74,8 +74,8 @@ def figure_6() -> Figure:
     return Figure(
         6,
         "A room with walls of two colours",
-        "A lamp of 30 × 30 mm under the ceiling. In (b) the white floor and the blocks take on the colour of the wall "
-        "beside them.",
+        "A lamp of 30 × 30 mm under the ceiling. In (b) what is white takes on the colour of the wall beside it, and "
+        "the room is lighter: light that walls give off again is not lost.",
         panels(
             (lit_by(room, lamp, bleeding=0.0, **shown), "soft shadows and light from all around"),
             (lit_by(room, lamp, bleeding=1.0, **shown), "with colour bleeding"),

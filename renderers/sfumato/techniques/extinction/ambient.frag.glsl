@@ -15,9 +15,10 @@ layout(location = 0) out vec4 o_light;
 void main() {
     ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer);
     o_light = vec4(1.0);
-    if (texelFetch(u_near, cell, 0).r == 0.0) return;
+    // No shells where light does not matter: software renderers leave a loop early, but not a branch.
+    int shells = texelFetch(u_near, cell, 0).r > 0.0 ? SHELLS : 0;
     vec3 depth = vec3(0.0), inner = texelFetch(u_means, cell, 0).rgb;
-    for (int k = 0; k < SHELLS; ++k) {
+    for (int k = 0; k < shells; ++k) {
         vec3 outer = box_sum(max(cell - u_half[k], 0), min(cell + u_half[k] + 1, u_cells)).rgb;
         depth += max(outer - inner, 0.0) * u_weight[k];
         inner = outer;
