@@ -193,7 +193,7 @@ def sides(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, ...]]:
 def test_a_cache_that_does_not_fit_is_worked_at_the_resolution_that_does(
     scene: Scene, sides: list[tuple[int, ...]]
 ) -> None:
-    wished = scene.with_(**{"technique.resolution": 128})
+    wished = scene.with_(**{"technique.resolution": 96, "lights": LAMPS[:1]})
     small, large = Renderer(budget=16 << 20), Renderer()
     try:
         got, wanted = draw(small, wished, 64), draw(large, wished, 64)
