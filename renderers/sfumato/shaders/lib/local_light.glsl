@@ -5,7 +5,7 @@
 // FACING     surfaces that turn away from a lamp are darker
 #include "blocks"
 
-uniform sampler3D u_map;         // rgb: sum over directions; a: sum of their weights
+uniform sampler3D u_map;         // rgb: sum over directions; a: sum of their weights, less in matter
 uniform float u_brightness, u_bias;
 uniform float u_share;           // of the lamps in a mix
 uniform float u_facing;          // how much a surface's slope counts, 0 to 1

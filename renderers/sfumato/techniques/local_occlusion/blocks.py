@@ -19,9 +19,9 @@ from .pyramid import EDGE, Pyramid, build_pyramid
 #: Width of the texture that holds the list of blocks.
 LIST_WIDTH = 1024
 #: Automatic data reduction of volumes of up to so many voxels; larger ones are reduced more.
-REDUCTION, ORDINARY = 8.5, 4 << 20
+REDUCTION, ORDINARY = 4.9, 4 << 20
 #: Texels that there may be in any case.
-FEW = 1 << 18
+FEW = 1 << 20
 #: Part of a device's budget that packed values and light may take.
 SHARE = 0.4
 #: Part of it that the volume itself may take.

@@ -13,12 +13,14 @@ uniform float u_offset, u_radius;  // mm
 uniform float u_samples;         // along the ray, for the finest level
 uniform float u_gamma;           // exponent on what a sample lets through (Eq. 5)
 uniform float u_weight;          // of this direction
+uniform float u_voxel_mm;
 uniform bool u_ends;             // light comes from the rays' ends alone (Fig. 1, left)
 uniform float u_unit_distance;   // mm
 
 layout(location = 0) out vec4 o_light;
 
 const int EDGE = 16, FINEST = 4, LIST_WIDTH = 1024;
+const float LEAST_OPEN = 1e-3;
 
 // Extinction per mm at a place, and what it gives off; nothing where it is cut away or in an empty block.
 float matter(vec3 t, out vec3 shining) {
@@ -60,17 +62,19 @@ void main() {
     // 3. Along the ray each sample brings its share of the light that those before it let through.
     float through = 1.0, share = first, at_share = 0.0;
     vec3 light = vec3(0.0), shining;
+    // What stands in matter counts less between texels: else surfaces would be striped by what lies below them.
+    float weight = u_weight * max(exp(-matter(t, shining) * u_voxel_mm), LEAST_OPEN);
     for (float m = 0.0; m < samples && through > 1e-3; ++m) {
         float tau = matter(t + u_ray * (u_offset + (at_share + 0.5 * share) * length_mm), shining);
-        light += u_weight * share * through * (1.0 + shining);
+        light += weight * share * through * (1.0 + shining);
         through *= exp(-tau * u_gamma * share * length_mm);
         at_share += share;
         share = rest;
     }
-    if (u_ends) light = vec3(u_weight * through);
+    if (u_ends) light = vec3(weight * through);
 #if COLORED
-    o_light = vec4(light, u_weight);
+    o_light = vec4(light, weight);
 #else
-    o_light = vec4(light.r, u_weight, 0.0, 0.0);
+    o_light = vec4(light.r, weight, 0.0, 0.0);
 #endif
 }

@@ -151,7 +151,7 @@ class Gatherer:
         transfer, volume = frame.transfer, frame.volume
         program.set(
             u_radius=radius, u_offset=offset, u_samples=float(frame.params.samples), u_gamma=frame.params.gamma,
-            u_ends=frame.params.ends,
+            u_ends=frame.params.ends, u_voxel_mm=volume.min_spacing,
             u_unit_distance=transfer.unit_distance or volume.unit_distance,
         )  # fmt: skip
         return program
