@@ -15,6 +15,7 @@ from sfumato_app.gallery.figure import Cuts, Figure
 from sfumato_app.gallery.figures import FIGURES
 from sfumato_app.gallery.hero import hero_panels
 
+LOCAL = (3, 4, 10)
 PAPER_FIGURES = (1, 8, 9, 10, 11, 12, 13, 14)
 COUNTS = {1: 4, 8: 3, 9: 2, 10: 4, 11: 4, 12: 4, 13: 4, 14: 2}
 #: Of Schlegel2011: numbers, and how many panels we make of each.
@@ -58,7 +59,11 @@ def test_figure_of_extinction_is_whole(number: int) -> None:
 
 
 def test_numbers_are_the_papers() -> None:
-    assert tuple(FIGURES) == (*PAPER_FIGURES, *(f"schlegel2011-{n}" for n in EXTINCTION))
+    assert tuple(FIGURES) == (
+        *PAPER_FIGURES,
+        *(f"schlegel2011-{n}" for n in EXTINCTION),
+        *(f"hernell2007-{n}" for n in LOCAL),
+    )
 
 
 @pytest.mark.parametrize("number", [1, 12])

@@ -24,6 +24,12 @@ Drawn on {day} with {renderer}.
 """
 _PAPERS = {
     "Soltesova2010": "",
+    "Hernell2007": """
+# Local ambient occlusion and emissive tissue
+
+Figures of Hernell2007, *Efficient Ambient and Emissive Tissue Illumination using Local Occlusion in Multiresolution
+Volume Rendering*, made again with our samples by `local-occlusion`.
+""",
     "Schlegel2011": """
 # Extinction-based shading
 
@@ -89,7 +95,7 @@ def _angles(panel: Panel) -> str:
     if (
         isinstance(panel.picture, Cuts)
         or "tilt" in panel.note
-        or panel.picture.technique_id in (*GRADIENT_SHADED, "extinction")
+        or panel.picture.technique_id in (*GRADIENT_SHADED, "extinction", "local-occlusion")
     ):
         return ""
     (lamp,) = panel.picture.active_lights

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..figure import Figure
-from . import extinction_places, extinction_scans, extinction_terms
+from . import extinction_places, extinction_scans, extinction_terms, local
 from .bonsai import figure_14
 from .cone import figure_8
 from .fish import figure_9
@@ -33,4 +33,7 @@ FIGURES: dict[int | str, Callable[[], Figure]] = {
     "schlegel2011-10": extinction_scans.figure_10,
     "schlegel2011-11": extinction_scans.figure_11,
     "schlegel2011-12": extinction_scans.figure_12,
+    "hernell2007-3": local.figure_3,
+    "hernell2007-4": local.figure_4,
+    "hernell2007-10": local.figure_10,
 }
