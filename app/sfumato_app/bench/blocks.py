@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 import sfumato
-from sfumato.renderer import FULL, Frame
+from sfumato.renderer import FULL
+from sfumato.techniques.frame import Frame
 from sfumato.techniques.local_occlusion.blocks import prepare_blocks
 from sfumato.techniques.local_occlusion.gather import Gatherer
 from sfumato.techniques.local_occlusion.levels import cielab

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
 
 import moderngl
@@ -119,7 +120,7 @@ def lay_out(frame: Frame, material: Material, pyramid: Pyramid) -> Packing:
 
 def automatic_texels(voxels: int) -> float:
     """Return how many texels stand for a volume of so many voxels, unless the user says so."""
-    return max(FEW, voxels / REDUCTION / max(1.0, voxels / ORDINARY) ** (2 / 3))
+    return max(float(FEW), voxels / REDUCTION / math.pow(max(1.0, voxels / ORDINARY), 2 / 3))
 
 
 def shown_blocks(frame: Frame, pyramid: Pyramid, visible: np.ndarray) -> np.ndarray:
