@@ -45,6 +45,15 @@ class Guest(Protocol):
         """Bytes of all that it keeps."""
         ...
 
+    @property
+    def bytes_needed(self) -> int:
+        """Bytes of what it keeps for the frame that is being drawn."""
+        ...
+
+    def give_up(self, excess: int) -> None:
+        """Free at least so many bytes, but nothing that the frame needs."""
+        ...
+
 
 class Store:
     """A least-recently-used cache of GPU objects (anything with ``release()``) and of tables on the CPU.
@@ -64,6 +73,7 @@ class Store:
         self._guests: dict[str, list[Guest]] = {}
         self._frames = 0
         self._pinned: set[Hashable] = set()
+        self.bytes_needed = 0
 
     @contextmanager
     def frame(self) -> Iterator[None]:
@@ -74,7 +84,22 @@ class Store:
         finally:
             self._frames -= 1
             if not self._frames:
+                self.bytes_needed = self._count_needed()
                 self._pinned.clear()
+
+    def _count_needed(self) -> int:
+        """Return the bytes of all that the frame asked for; `bytes_needed` keeps those of the latest one."""
+        own = sum(size for key, (_, size) in self._items.items() if key in self._pinned)
+        return own + sum(guest.bytes_needed for guests in self._guests.values() for guest in guests)
+
+    def pin(self, key: Hashable) -> None:
+        """Keep what is under a key, here or with a guest, while a frame is drawn."""
+        if self._frames:
+            self._pinned.add(key)
+
+    def is_pinned(self, key: Hashable) -> bool:
+        """Whether a frame that is being drawn needs what is under a key."""
+        return key in self._pinned
 
     def admit(self, name: str, guest: Guest) -> None:
         """Count what a guest keeps as ours from now on, until `dismiss`."""
@@ -98,8 +123,7 @@ class Store:
         size : callable or int
             Its bytes on the GPU.
         """
-        if self._frames:
-            self._pinned.add(key)
+        self.pin(key)
         if key in self._items:
             self._items.move_to_end(key)
             return self._items[key][0]  # type: ignore[no-any-return]
@@ -114,11 +138,19 @@ class Store:
         return key in self._items
 
     def make_room(self, newest: Hashable = None) -> None:
-        """Free the oldest things until the budget is kept, but nothing that a frame needs."""
+        """Free the oldest things until the budget is kept, but nothing that a frame needs; guests' things last."""
         for key in [key for key in self._items if key not in self._pinned and key != newest]:
-            if self.bytes_in_use + self.bytes_of_guests <= self.budget:
+            if self._excess <= 0:
                 return
             _release(self._items.pop(key)[0])
+        for guest in [guest for guests in self._guests.values() for guest in guests]:
+            if self._excess > 0:
+                guest.give_up(self._excess)
+
+    @property
+    def _excess(self) -> int:
+        """Bytes above the budget."""
+        return self.bytes_in_use + self.bytes_of_guests - self.budget
 
     def drop(self, predicate: Callable[[Hashable], bool]) -> None:
         """Free everything whose key satisfies a predicate."""

@@ -83,6 +83,7 @@ class LightCache:
         """Return the texture that holds a sweep, or None."""
         if key in self._kept:
             self._kept.move_to_end(key)
+            self._pin(key)
         return self._kept.get(key)
 
     def take(self, size: tuple[int, int, int], in_use: int) -> Any:
@@ -105,13 +106,38 @@ class LightCache:
     def keep(self, key: Hashable, texture: Any) -> None:
         """Keep a texture whose sweep is complete."""
         self._kept[key] = texture
+        self._pin(key)
         if self._store is not None:
             self._store.make_room()
+
+    def _pin(self, key: Hashable) -> None:
+        if self._store is not None:
+            self._store.pin((id(self), key))
+
+    def _needed(self, key: Hashable) -> bool:
+        return self._store is not None and self._store.is_pinned((id(self), key))
+
+    def give_up(self, excess: int) -> None:
+        """Free the oldest textures, at least so many bytes, but none that the frame being drawn needs."""
+        for key in [key for key in self._kept if not self._needed(key)]:
+            if excess <= 0:
+                return
+            texture = self._kept.pop(key)
+            excess -= self._size(texture)
+            texture.release()
 
     @property
     def bytes_in_use(self) -> int:
         """Bytes of all that is kept."""
-        return sum(math.prod(texture.size) * self._bytes for texture in self._kept.values())
+        return sum(self._size(texture) for texture in self._kept.values())
+
+    @property
+    def bytes_needed(self) -> int:
+        """Bytes of what is kept for the frame that is being drawn."""
+        return sum(self._size(texture) for key, texture in self._kept.items() if self._needed(key))
+
+    def _size(self, texture: Any) -> int:
+        return int(math.prod(texture.size)) * self._bytes
 
     def release(self) -> None:
         """Free everything."""
