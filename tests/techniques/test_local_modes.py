@@ -11,7 +11,7 @@ import pytest
 
 from sfumato import Light, Scene, TransferFunction, Volume
 from sfumato.renderer import FULL, Renderer
-from sfumato.techniques.local_occlusion import passes
+from sfumato.techniques.local_occlusion import passes, resolve
 from sfumato.techniques.local_occlusion.params import LocalOcclusionParams
 
 pytestmark = pytest.mark.gpu
@@ -163,3 +163,18 @@ def test_longer_steps_in_coarse_blocks_do_not_change_what_is_even(renderer: Rend
     long, short = linear(renderer, scene, adaptive=True), linear(renderer, scene, adaptive=False)
     assert long.max() > 0.1
     np.testing.assert_allclose(long, short, atol=0.01)
+
+
+@pytest.mark.parametrize("emission", [0.0, 0.8])
+def test_resolved_light_is_that_of_the_packed_blocks(
+    renderer: Renderer, scene: Scene, monkeypatch: pytest.MonkeyPatch, emission: float
+) -> None:
+    shining = scene.with_({"transfer.points.1.emission": (emission,) * 3})
+    shown = shining.with_({"technique.reduction": 1.0, "technique.coarsest": 4, "technique.lamps": "off"})
+    fast = linear(renderer, shown)
+    assert any(name == "local light, resolved" for name, _ in renderer.device.store.things())
+    monkeypatch.setattr(resolve, "SHARE", 0.0)
+    slow = linear(renderer, shown)
+    assert slow.max() > 0.3
+    # Light is kept in halves of a float: 11 bits.
+    assert np.abs(fast - slow).max() < 2e-3 * slow.max()

@@ -53,7 +53,9 @@ RATIOS = (
     Ratio("a drag's frame / ray casting", "cone-drag", "raycast", Goal(1.2)),
     Ratio("a drag's frame / ray casting", "multidirectional-drag", "raycast"),
     Ratio("light kept / light moved", "cone-still", "cone"),
+    # Hernell2007, Fig. 3: diffuse shading 26.4 frames/s, light from all around in its place 27.2.
     Ratio("local occlusion / diffuse", "local-occlusion", "raycast-phong", Goal(1.05)),
+    Ratio("local occlusion beside diffuse / diffuse", "local-occlusion-diffuse", "raycast-phong"),
     Ratio("after a change / its light kept", "local-occlusion-retouched", "local-occlusion"),
     # Schlegel2011, Table 1: 1.13 to 1.86, its engine with a moving light 2.3, light from all around alone 1.29.
     Ratio("extinction, light at rest / ray casting", "extinction-still", "raycast", Goal(1.3)),

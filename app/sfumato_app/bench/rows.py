@@ -103,7 +103,9 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("cone-still", "... its light kept from the frame before", _ours("cone")),
         ("cone-turning", "... its light turning", _moving("cone", "rotation")),
         ("cone-drag", "... at drag quality, its light turning", _moving("cone", "rotation", quality=DRAG)),
+        # As published: light from all around in place of diffuse shading, so that no gradient is needed.
         ("local-occlusion", "local occlusion, its light kept", _local()),
+        ("local-occlusion-diffuse", "... mixed with diffuse shading", _local(lamps="diffuse")),
         ("local-occlusion-retouched", "... the first picture after a change of colours", _local(Retouched)),
         # Slope shading takes a gradient a sample, as Phong does; without it light is one look-up.
         ("extinction", "extinction-based light, slopes shaded, light at rest", _extinction()),
@@ -122,8 +124,8 @@ def _ours(technique: str) -> Callable[[Stage, Setting], Contender]:
     return lambda stage, setting: Ours(stage.renderer, setting, technique)
 
 
-def _local(kind: type[Ours] = Ours) -> Callable[[Stage, Setting], Contender]:
-    changes = {"technique.lamps": "off", "technique.directions": LEAST}
+def _local(kind: type[Ours] = Ours, lamps: str = "off") -> Callable[[Stage, Setting], Contender]:
+    changes = {"technique.lamps": lamps, "technique.directions": LEAST}
     quality = replace(FULL, progressive=True)
     return lambda stage, setting: kind(stage.renderer, setting, "local-occlusion", quality, changes)
 

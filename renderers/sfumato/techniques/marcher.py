@@ -157,6 +157,7 @@ class Variant:
     facing: bool = False
     local: int = 0
     joined: bool = False
+    resolved: bool = False
     adaptive: bool = False
     surface: bool = False
     geometry: bool = False
@@ -177,7 +178,7 @@ class Marcher:
             ("SLICES", int(variant.slices)), ("LIGHTS", variant.lights), ("LITERAL", int(variant.literal)),
             ("NEAR", variant.near), ("SHADING", variant.shading), ("SPECULAR", int(variant.specular)),
             ("FACING", int(variant.facing)), ("LOCAL", variant.local), ("JOINED", int(variant.joined)),
-            ("ADAPTIVE", int(variant.adaptive)),
+            ("RESOLVED", int(variant.resolved)), ("ADAPTIVE", int(variant.adaptive)),
             ("SURFACE", int(variant.surface)), ("GEOMETRY", int(variant.geometry)),
             ("EMISSION", int(material.tables.emits)),
             *material_defines(material),

@@ -2,17 +2,23 @@
 //
 // LOCAL      how lamps are combined with it: 1 product, 2 mix
 // LIGHTS     number of lamps
+// RESOLVED   1: it is in one texture in the volume's space, not in packed blocks
 // FACING     surfaces that turn away from a lamp are darker
 #include "blocks"
 
 uniform sampler3D u_map;         // rgb: sum over directions; a: sum of their weights, less in matter
+uniform vec3 u_map_scale, u_map_offset;  // the volume's texture coordinates to the map's, if it is resolved
 uniform float u_brightness, u_bias;
 uniform float u_share;           // of the lamps in a mix
 uniform float u_facing;          // how much a surface's slope counts, 0 to 1
 
 // Linear RGB from all around at a place of the volume: the mean of the directions so far.
 vec3 light_around(vec3 t) {
+#if RESOLVED
+    vec4 sum = textureLod(u_map, t * u_map_scale + u_map_offset, 0.0);
+#else
     vec4 sum = packed_value(u_map, t);
+#endif
     return u_brightness * (u_bias + sum.rgb / max(sum.a, 1e-6));
 }
 

@@ -31,6 +31,8 @@ class LightMap:
     ----------
     texture
         Linear RGB and weight; light and weight alone where nothing shines by itself.
+    key : tuple
+        What it depends on.
     units, weights : ndarray
         All directions in their order, shape (K, 3), and what each counts for, shape (K,), with mean 1.
     done, slab : int
@@ -38,8 +40,15 @@ class LightMap:
     """
 
     def __init__(
-        self, device: Device, blocks: Blocks, colored: bool, units: np.ndarray, weights: np.ndarray
+        self,
+        device: Device,
+        key: tuple[Hashable, ...],
+        blocks: Blocks,
+        colored: bool,
+        units: np.ndarray,
+        weights: np.ndarray,
     ) -> None:
+        self.key = key
         size = blocks.packing.size
         self.colored, self.units, self.weights = colored, units, weights
         self.done, self.slab = 0, 0
@@ -91,12 +100,14 @@ class Gatherer:
         units, weights = rays(frame)
         colored = gathers_emission(frame, material)
         key: tuple[Hashable, ...] = (
-            "local light", *blocks_key(frame), *reach(frame), frame.params.samples, frame.params.gamma,
+            *blocks_key(frame), *reach(frame), frame.params.samples, frame.params.gamma,
             frame.params.ends, colored, np.round(units, 9).tobytes(), np.round(weights, 9).tobytes(),
         )  # fmt: skip
         store = frame.device.store
         return store.get(
-            key, lambda: LightMap(self.device, blocks, colored, units, weights), lambda m: m.size
+            ("local light", *key),
+            lambda: LightMap(self.device, key, blocks, colored, units, weights),
+            lambda m: m.size,
         )
 
     def gather(

@@ -6,6 +6,8 @@ import time
 from collections.abc import Generator
 from dataclasses import replace
 
+import numpy as np
+
 from ...gpu import Device, Program
 from ..frame import Frame
 from ..lamp_shadows import Lamps, LampShadows
@@ -25,6 +27,8 @@ from ..marcher import (
 )
 from .blocks import Blocks, is_whole, prepare_blocks
 from .gather import Gatherer, LightMap
+from .pyramid import EDGE
+from .resolve import ResolvedLight, Resolver
 
 #: Directions without which no picture is shown.
 LEAST = 4
@@ -41,6 +45,7 @@ class LocalOcclusionPainter:
         self.device = device
         self.marcher = Marcher(device)
         self.gatherer = Gatherer(device)
+        self.resolver = Resolver(device)
         self.shadows = LampShadows(device)
         self._drawing = SECONDS
 
@@ -62,7 +67,11 @@ class LocalOcclusionPainter:
             yield 0.4 * done
         frame.light = light.share
         began = time.perf_counter()
-        program = yield from self._program(frame, material, blocks, light)
+        resolved = self.resolver.resolved(frame, blocks, light)
+        if resolved is not None:
+            for done in self.resolver.resolve(frame, blocks, light, resolved):
+                yield 0.4 + 0.1 * done
+        program = yield from self._program(frame, material, blocks, resolved or light)
         self.marcher.begin(frame)
         for done in self.marcher.march(frame, program, (0, 1 << 24), box, True):
             yield 0.5 + 0.5 * done
@@ -71,12 +80,15 @@ class LocalOcclusionPainter:
         yield 1.0
 
     def _program(
-        self, frame: Frame, material: Material, blocks: Blocks, light: LightMap
+        self, frame: Frame, material: Material, blocks: Blocks, light: LightMap | ResolvedLight
     ) -> Generator[float, None, Program]:
         """Set up the ray caster; sweeps lamps that cast shadows, if they have to be."""
         params, active = frame.params, len(frame.scene.active_lights)
         mode = PRODUCT if params.mode == "product" else MIX
-        variant = Variant(shading=LOCAL, local=mode, joined=params.joined, adaptive=params.adaptive)
+        variant = Variant(
+            shading=LOCAL, local=mode, joined=params.joined, adaptive=params.adaptive,
+            resolved=isinstance(light, ResolvedLight),
+        )  # fmt: skip
         lamps = None
         if params.lamps == "diffuse":
             variant = replace(variant, lights=active)
@@ -103,6 +115,7 @@ class LocalOcclusionPainter:
         """Free the GPU objects."""
         self.marcher.release()
         self.gatherer.release()
+        self.resolver.release()
         self.shadows.release()
 
 
@@ -112,11 +125,14 @@ def shown_emission(frame: Frame, material: Material) -> Material:
     return replace(material, tables=replace(material.tables, emits=emits))
 
 
-def bind_light(program: Program, frame: Frame, blocks: Blocks, light: LightMap) -> None:
+def bind_light(program: Program, frame: Frame, blocks: Blocks, light: LightMap | ResolvedLight) -> None:
     """Set what ``local_light.glsl`` needs."""
     params = frame.params
     blocks.bind(program, frame)
-    program.bind(u_map=light.texture)
+    if isinstance(light, ResolvedLight):
+        light.bind(program, np.asarray(frame.volume.dims) / EDGE)
+    else:
+        program.bind(u_map=light.texture)
     program.set(
         u_brightness=params.brightness, u_bias=params.bias, u_share=params.share, u_facing=params.facing,
     )  # fmt: skip
