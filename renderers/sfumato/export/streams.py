@@ -170,8 +170,8 @@ class TiffStream:
             338: short(2), 34675: (7, len(profile), profile),
         }  # fmt: skip
         if self._text:
-            # The space keeps readers that look for their own JSON (tifffile: a brace first, a "shape" in it) off ours.
-            entries[270] = words(" " + self._text)
+            # The space keeps readers that look for their own JSON (tifffile: a brace, and "shape": in it) off ours.
+            entries[270] = words(self._text.replace('"shape":', '"shape" :'))
         return entries
 
 

@@ -79,6 +79,9 @@ def _terms(scene: Scene, draw: Draw) -> Iterator[tuple[str, np.ndarray]]:
         # Every sample shows its own colour: light from everywhere.
         yield "ambient", draw(scene)
         return
+    if technique.around:
+        yield from _beside_light_around(scene, technique.max_lights, draw)
+        return
     ambient = float(getattr(scene.technique, "ambient", 0.0))
     if ambient and not technique.ambient_of_lamps:
         yield "ambient", draw(_with(scene, lights=()))
@@ -86,6 +89,17 @@ def _terms(scene: Scene, draw: Draw) -> Iterator[tuple[str, np.ndarray]]:
         share = ambient if technique.ambient_of_lamps else 0.0
         for name, picture in _of_light(_with(scene, lights=(light,)), share, draw):
             yield f"lights.{index}.{name}", picture
+
+
+def _beside_light_around(scene: Scene, most: int, draw: Draw) -> Iterator[tuple[str, np.ndarray]]:
+    """Return the terms where light from all around counts less beside lamps: these stay, black, in each picture."""
+    black = tuple(dataclasses.replace(light, color=(0.0, 0.0, 0.0)) for light in scene.lights)
+    around = draw(_with(scene, lights=black))
+    if around.any():
+        yield "ambient", around
+    for index, light in _shining(scene)[:most]:
+        one = (*black[:index], light, *black[index + 1 :])
+        yield f"lights.{index}.diffuse", draw(_with(scene, lights=one)) - around
 
 
 def _of_light(scene: Scene, share: float, draw: Draw) -> Iterator[tuple[str, np.ndarray]]:

@@ -33,7 +33,7 @@ def read_tiff_text(stream: BinaryIO) -> str | None:
             if kind != _ASCII or not 4 < length <= MAX_TEXT:
                 return None
             stream.seek(place)
-            text = stream.read(length).strip(b"\0 ").decode("ascii", "replace")
+            text = stream.read(length).rstrip(b"\0").decode("ascii", "replace")
             return text if text.startswith(_OURS) else None
     return None
 

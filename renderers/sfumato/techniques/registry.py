@@ -54,6 +54,8 @@ class Technique:
         Kinds of lamps that it lights as what they are; others it takes for parallel light from their place.
     ambient_of_lamps : bool
         Whether its parameter ``ambient`` is a share of each lamp, instead of a light of its own.
+    around : bool
+        Whether it has light from all around, whose share depends on whether there are lamps.
     floor : bool
         Whether its shadows keep to the scene's ``shadow_floor``; those without lamps' shadows have none.
     geometry : bool
@@ -73,6 +75,7 @@ class Technique:
     max_lights: int = 4
     kinds: tuple[str, ...] = ("directional",)
     ambient_of_lamps: bool = False
+    around: bool = False
     floor: bool = True
     geometry: bool = False
     options: dict[str, Any] = field(default_factory=dict, compare=False)

@@ -32,5 +32,6 @@ TECHNIQUES = (
         LocalOcclusionParams,
         "..techniques.local_occlusion.passes:LocalOcclusionPainter",
         source="Hernell2007",
+        around=True,
     ),
 )
