@@ -49,7 +49,8 @@ class World:
     def __init__(self, device: Device, size: tuple[int, int, int]) -> None:
         self.size = size
         self.world = new_texture(device, size, 4, "f2", linear=True)
-        self.lamps = new_texture(device, size, 4, "nu2", linear=True)
+        # As exact as lamp 0 in `world`, so that a lamp alone is lit as it is among others.
+        self.lamps = new_texture(device, size, 4, "f2", linear=True)
 
     def release(self) -> None:
         """Free the textures."""
