@@ -91,6 +91,7 @@ def bench() -> Iterator[Bench]:
     renderer = Renderer()
     makers = FieldMaker(renderer.device), TermMaker(renderer.device)
     yield Bench(renderer, makers)
+    renderer.device.make_current()  # objects of another context may have the same numbers
     for maker in makers:
         maker.release()
     renderer.close()

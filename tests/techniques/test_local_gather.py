@@ -34,6 +34,7 @@ class Bench:
     gatherer: Gatherer
 
     def prepare(self, scene: Scene) -> tuple[Frame, Material, Blocks, LightMap]:
+        self.renderer.device.make_current()
         frame = Frame(self.renderer.device, scene, (8, 8), None, FULL)  # type: ignore[arg-type]
         material = prepare_material(frame)
         blocks = prepare_blocks(frame, material)
@@ -64,6 +65,7 @@ def bench() -> Iterator[Bench]:
     renderer = Renderer()
     gatherer = Gatherer(renderer.device)
     yield Bench(renderer, gatherer)
+    renderer.device.make_current()  # objects of another context may have the same numbers
     gatherer.release()
     renderer.close()
 
