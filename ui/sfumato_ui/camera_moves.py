@@ -14,6 +14,7 @@ import numpy as np
 from sfumato import Camera, Scene
 from sfumato.scene import STANDARD_VIEWS
 from sfumato.scene.presets import suggest_view
+from sfumato.scene.vectors import vec3
 
 from .subject import bounds_of
 
@@ -21,11 +22,6 @@ from .subject import bounds_of
 POLE_MARGIN = 1.0
 #: Limits of the distance between eye and focal point, relative to the subject's size.
 NEAREST, FARTHEST = 0.02, 50.0
-
-
-def _vec(values: np.ndarray) -> tuple[float, float, float]:
-    x, y, z = (float(v) for v in values)
-    return x, y, z
 
 
 def _turned(vector: np.ndarray, axis: np.ndarray, degrees: float) -> np.ndarray:
@@ -57,7 +53,7 @@ def orbit(camera: Camera, azimuth: float, elevation: float) -> Camera:
     elevation = polar - max(POLE_MARGIN, min(180 - POLE_MARGIN, polar - elevation))
     right = np.asarray(camera.basis().right)
     arm = _turned(_turned(arm, right, -elevation), up, -azimuth)
-    return replace(camera, position=_vec(np.asarray(camera.focal_point) + arm))
+    return replace(camera, position=vec3(np.asarray(camera.focal_point) + arm))
 
 
 def pan(camera: Camera, dx: float, dy: float) -> Camera:
@@ -67,8 +63,8 @@ def pan(camera: Camera, dx: float, dy: float) -> Camera:
     shift = -height * (dx * np.asarray(basis.right) + dy * np.asarray(basis.up))
     return replace(
         camera,
-        position=_vec(np.asarray(camera.position) + shift),
-        focal_point=_vec(np.asarray(camera.focal_point) + shift),
+        position=vec3(np.asarray(camera.position) + shift),
+        focal_point=vec3(np.asarray(camera.focal_point) + shift),
     )
 
 
@@ -86,7 +82,7 @@ def zoom(camera: Camera, factor: float, x: float = 0.0, y: float = 0.0, size: fl
     if size > 0:
         factor = half / max(NEAREST * size, min(FARTHEST * size, half / factor))
     arm = np.subtract(camera.position, camera.focal_point)
-    closer = replace(camera, position=_vec(np.asarray(camera.focal_point) + arm / factor))
+    closer = replace(camera, position=vec3(np.asarray(camera.focal_point) + arm / factor))
     if camera.parallel_projection:
         # The eye keeps its distance, so that it does not move into the subject.
         closer = replace(camera, parallel_scale=camera.parallel_scale / factor)
@@ -98,8 +94,8 @@ def centred(camera: Camera, point: tuple[float, float, float]) -> Camera:
     shift = np.subtract(point, camera.focal_point)
     return replace(
         camera,
-        position=_vec(np.asarray(camera.position) + shift),
-        focal_point=_vec(np.asarray(point)),
+        position=vec3(np.asarray(camera.position) + shift),
+        focal_point=vec3(np.asarray(point)),
         window_center=(0.0, 0.0),
     )
 
@@ -131,14 +127,14 @@ def with_projection(camera: Camera, parallel: bool) -> Camera:
 def _at_distance(camera: Camera, distance: float) -> Camera:
     arm = np.subtract(camera.position, camera.focal_point)
     arm = arm / np.linalg.norm(arm) * distance
-    return replace(camera, position=_vec(np.asarray(camera.focal_point) + arm))
+    return replace(camera, position=vec3(np.asarray(camera.focal_point) + arm))
 
 
 def from_side(camera: Camera, view: str) -> Camera:
     """Return the camera moved to a standard view, with the same focal point, distance and lens."""
     side, up = STANDARD_VIEWS[view]
     arm = np.asarray(side, dtype=float) * camera.distance
-    return replace(camera, position=_vec(np.asarray(camera.focal_point) + arm), view_up=up)
+    return replace(camera, position=vec3(np.asarray(camera.focal_point) + arm), view_up=up)
 
 
 def whole_view(scene: Scene, aspect: float, view: str = "") -> Camera | None:

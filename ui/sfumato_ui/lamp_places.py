@@ -10,11 +10,10 @@ import numpy as np
 from sfumato import Light, Scene
 from sfumato.scene import MAX_LIGHTS, nearest_possible_tilt
 from sfumato.scene.light import FARTHEST, PATIENT_BASIS
+from sfumato.scene.vectors import Vec3, angles_of, vec3
 from sfumato.techniques import Technique, technique_for
 
 from . import light_moves
-
-Vec3 = tuple[float, float, float]
 
 #: Parts of the visible box's diagonal: how far outside it a new lamp stands, and how large it is.
 ROOM, BALL, SURFACE, TUBE = 0.12, 0.02, 0.25, 0.01
@@ -79,7 +78,7 @@ def seen_angles(scene: Scene, light: Light) -> tuple[float, float]:
         return light.tilt, light.rotation
     basis = scene.camera.basis()
     axes = np.array([basis.right, basis.up, basis.back])
-    return light_moves.angles_of(axes @ light.towards(basis, _vec(middle_of(scene))))
+    return angles_of(axes @ light.towards(basis, vec3(middle_of(scene))))
 
 
 def dial_angles(scene: Scene, light: Light) -> tuple[float, float]:
@@ -98,7 +97,7 @@ def placed(scene: Scene, light: Light, x: float, y: float) -> dict[str, Any]:
     if light.placed:
         return turned(scene, light, towards)
     patient = np.array([PATIENT_BASIS.right, PATIENT_BASIS.up, PATIENT_BASIS.back])
-    tilt, rotation = light_moves.angles_of(patient @ towards)
+    tilt, rotation = angles_of(patient @ towards)
     return {"tilt": nearest_possible_tilt(tilt, light.aperture), "rotation": rotation}
 
 
@@ -119,11 +118,11 @@ def turned(scene: Scene, light: Light, towards: np.ndarray) -> dict[str, Any]:
     if distance <= MIDDLE * diagonal_of(scene):
         return {}
     rotation = rotation_between(arm / distance, towards)
-    fields: dict[str, Any] = {"position": _vec(middle + distance * towards)}
+    fields: dict[str, Any] = {"position": vec3(middle + distance * towards)}
     if light.kind in ("spot", "area"):
         fields |= {
-            "direction": _vec(rotation @ np.asarray(light.direction)),
-            "axis": _vec(rotation @ np.asarray(light.axis)),
+            "direction": vec3(rotation @ np.asarray(light.direction)),
+            "axis": vec3(rotation @ np.asarray(light.axis)),
         }
     return fields
 
@@ -142,7 +141,7 @@ def rotation_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def within_reach(point: np.ndarray) -> Vec3:
     """Return a place as a lamp may have it."""
-    return _vec(np.clip(point, -FARTHEST, FARTHEST))
+    return vec3(np.clip(point, -FARTHEST, FARTHEST))
 
 
 # -- kinds --------------------------------------------------------------------------------------------
@@ -179,8 +178,8 @@ def as_kind(scene: Scene, light: Light, wanted: LampKind) -> dict[str, Any]:
 def _direction_from_place(scene: Scene, light: Light) -> dict[str, Any]:
     assert scene.camera is not None
     basis = scene.camera.basis() if light.attached == "viewer" else PATIENT_BASIS
-    towards = light.towards(scene.camera.basis(), _vec(middle_of(scene)))
-    tilt, rotation = light_moves.angles_of(np.array([basis.right, basis.up, basis.back]) @ towards)
+    towards = light.towards(scene.camera.basis(), vec3(middle_of(scene)))
+    tilt, rotation = angles_of(np.array([basis.right, basis.up, basis.back]) @ towards)
     return {"tilt": nearest_possible_tilt(tilt, light.aperture), "rotation": rotation}
 
 
@@ -188,7 +187,7 @@ def _first_place(scene: Scene, light: Light) -> dict[str, Any]:
     """Return the place towards a parallel light, just outside the visible box."""
     assert scene.camera is not None
     middle, size = middle_of(scene), diagonal_of(scene)
-    towards = light.towards(scene.camera.basis(), _vec(middle))
+    towards = light.towards(scene.camera.basis(), vec3(middle))
     way = 0.5 * size
     if scene.volume is not None:
         corners = scene.volume.corners(scene.crop.low, scene.crop.high)
@@ -205,7 +204,7 @@ def _to_the_middle(scene: Scene, position: Vec3) -> Vec3:
     length = float(np.linalg.norm(way))
     if length <= MIDDLE * diagonal_of(scene):
         return scene.camera.basis().forward
-    return _vec(way / length)
+    return vec3(way / length)
 
 
 # -- words --------------------------------------------------------------------------------------------
@@ -230,11 +229,6 @@ def place_words(scene: Scene, position: Vec3) -> str:
 def axis_names(scene: Scene) -> tuple[tuple[str, str], ...]:
     """Return the names of the world's axes: where a coordinate grows, and the whole way in words."""
     return AXES if orientation_known(scene) else tuple((name, name) for name in "xyz")
-
-
-def _vec(values: np.ndarray) -> Vec3:
-    x, y, z = (float(v) for v in values)
-    return x, y, z
 
 
 __all__ = [

@@ -14,6 +14,7 @@ import numpy as np
 from sfumato import Light
 from sfumato.scene import nearest_possible_tilt
 from sfumato.scene.light import GRAZING_MARGIN
+from sfumato.scene.vectors import angles_of
 
 #: Outer radius of the ring of rear lights.
 RING = 1.32
@@ -43,12 +44,6 @@ def direction(tilt: float, rotation: float) -> np.ndarray:
     """Return the unit vector (right, up, towards the viewer) of a tilt and rotation in degrees."""
     t, phi = math.radians(tilt), math.radians(rotation)
     return np.array([math.sin(t) * math.cos(phi), math.sin(t) * math.sin(phi), math.cos(t)])
-
-
-def angles_of(towards: np.ndarray) -> tuple[float, float]:
-    """Return tilt and rotation in degrees of a unit vector (right, up, towards the viewer)."""
-    tilt = math.degrees(math.acos(float(np.clip(towards[2], -1, 1))))
-    return tilt, math.degrees(math.atan2(towards[1], towards[0])) % 360.0
 
 
 def cone_outline(light: Light, points: int = 64) -> list[tuple[float, float]]:

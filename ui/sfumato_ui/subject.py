@@ -8,6 +8,7 @@ import numpy as np
 
 from sfumato import Scene
 from sfumato.scene import TechniqueParams
+from sfumato.scene.vectors import box_corners
 from sfumato.techniques import technique_for, technique_with_geometry
 
 
@@ -29,9 +30,7 @@ def bounds_of(scene: Scene) -> np.ndarray | None:
     if not scene.geometry:
         return None
     ends = np.concatenate([g.bounds for g in scene.geometry])
-    low, high = ends.min(axis=0), ends.max(axis=0)
-    picks = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-    return np.asarray(np.where(picks == 1, high, low))
+    return box_corners(np.stack([ends.min(axis=0), ends.max(axis=0)]))
 
 
 def size_of(scene: Scene) -> float:

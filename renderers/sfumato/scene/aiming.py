@@ -18,6 +18,7 @@ from .camera import Basis
 from .light import FARTHEST, PATIENT_BASIS, SHORTEST, Light, nearest_possible_tilt
 from .picking import value_gradient
 from .scene import Scene
+from .vectors import angles_of, vec3
 
 #: Points that are nearer to each other than this, in voxels, give no direction.
 NEAREST_VOXELS = 2.0
@@ -109,12 +110,6 @@ def direction_in_effect(scene: Scene, light: Light, place: np.ndarray) -> np.nda
     return light.towards(basis, target)
 
 
-def angles_of(towards: np.ndarray) -> tuple[float, float]:
-    """Return tilt and rotation in degrees of a unit vector (right, up, back)."""
-    tilt = math.degrees(math.acos(max(-1.0, min(1.0, float(towards[2])))))
-    return tilt, math.degrees(math.atan2(towards[1], towards[0])) % 360.0
-
-
 def _moved(scene: Scene, light: Light, towards: np.ndarray, through: np.ndarray) -> dict[str, Any]:
     """Return the fields of a lamp with a place: moved about the point, or about what it is taken to light."""
     assert scene.camera is not None
@@ -123,9 +118,9 @@ def _moved(scene: Scene, light: Light, towards: np.ndarray, through: np.ndarray)
     else:
         pivot = np.asarray(scene.volume.center if scene.volume is not None else scene.camera.focal_point)
     away = float(np.linalg.norm(np.asarray(light.position) - pivot))
-    fields: dict[str, Any] = {"position": _vec(np.clip(pivot + away * towards, -FARTHEST, FARTHEST))}
+    fields: dict[str, Any] = {"position": vec3(np.clip(pivot + away * towards, -FARTHEST, FARTHEST))}
     if light.needs_direction:
-        fields["direction"] = _vec(-towards)
+        fields["direction"] = vec3(-towards)
     return fields
 
 
@@ -147,11 +142,6 @@ def _sight(scene: Scene, place: np.ndarray) -> np.ndarray:
 
 def _axes(basis: Basis) -> np.ndarray:
     return np.array([basis.right, basis.up, basis.back])
-
-
-def _vec(values: np.ndarray) -> tuple[float, float, float]:
-    x, y, z = (float(v) for v in values)
-    return x, y, z
 
 
 __all__ = ["Aimed", "aimed", "direction_in_effect", "highlight_direction", "shadow_direction"]

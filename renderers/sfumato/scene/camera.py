@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import SceneError
 from .params import Param, check
+from .vectors import box_corners
 
 if TYPE_CHECKING:
     from .volume import Volume
@@ -152,9 +153,7 @@ class Camera:
         side, up = STANDARD_VIEWS[view] if isinstance(view, str) else view
         points = np.asarray(bounds, dtype=float)
         if points.shape == (2, 3):
-            points = np.array(
-                [[points[i, 0], points[j, 1], points[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)]
-            )
+            points = box_corners(points)
         center = (points.min(axis=0) + points.max(axis=0)) / 2
         back = np.asarray(side, dtype=float)
         right = np.cross(up, back)

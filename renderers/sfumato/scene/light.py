@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import SceneError
 from .camera import Basis
 from .params import Param, check
+from .vectors import angles_of
 
 Vec3 = tuple[float, float, float]
 
@@ -243,9 +244,7 @@ class Light:
         if self.kind == "directional" and self.attached == "viewer":
             return self.tilt, self.rotation % 360.0
         towards = self.towards(basis, target)
-        x, y, z = (float(np.dot(towards, axis)) for axis in (basis.right, basis.up, basis.back))
-        tilt = math.degrees(math.acos(max(-1.0, min(1.0, z))))
-        rotation = math.degrees(math.atan2(y, x)) % 360.0
+        tilt, rotation = angles_of(np.array([basis.right, basis.up, basis.back]) @ towards)
         return nearest_possible_tilt(tilt, self.aperture), rotation
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from qtpy.QtCore import QObject, Signal
 
 from sfumato import Roi, Seeds
+from sfumato.scene.vectors import vec3
 
 from .stage import VtkStage
 
@@ -20,8 +21,6 @@ _WIDGETS = {
     "plane": "vtkPlaneWidget",
     "box": "vtkBoxWidget",
 }
-
-Vec3 = tuple[float, float, float]
 
 
 class PlacingTool(QObject):
@@ -93,7 +92,7 @@ class PlacingTool(QObject):
             return replace(seeds, start=self._widget.GetPoint1(), end=self._widget.GetPoint2())
         corner = np.asarray(self._widget.GetOrigin())
         u, v = (np.asarray(p) - corner for p in (self._widget.GetPoint1(), self._widget.GetPoint2()))
-        return replace(seeds, center=_vec(corner + (u + v) / 2), edge_u=_vec(u), edge_v=_vec(v))
+        return replace(seeds, center=vec3(corner + (u + v) / 2), edge_u=vec3(u), edge_v=vec3(v))
 
     def region(self) -> Roi:
         """Return the region that the box is."""
@@ -102,12 +101,7 @@ class PlacingTool(QObject):
         corners = vtkPolyData()
         self._widget.GetPolyData(corners)
         low, high = np.asarray(corners.GetBounds()).reshape(3, 2).T
-        return Roi(kind="box", center=_vec((low + high) / 2), size=_vec(np.maximum((high - low) / 2, 1e-6)))
-
-
-def _vec(values: np.ndarray) -> Vec3:
-    x, y, z = (float(v) for v in values)
-    return x, y, z
+        return Roi(kind="box", center=vec3((low + high) / 2), size=vec3(np.maximum((high - low) / 2, 1e-6)))
 
 
 def _prepare(kind: str, widget: Any) -> None:

@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 
 from ...errors import GpuError
-from ...gpu import Device, Program, ShaderSource
+from ...gpu import Device, Variants
 from ..stack import Lattice
 from .surfels import Surfels
 
@@ -51,11 +51,6 @@ class Atlas:
         """Texels of the picture."""
         return self.columns * self.size[0], -(-self.slabs // self.columns) * self.size[1]
 
-    @property
-    def uniforms(self) -> dict[str, Any]:
-        """What shaders need to find a layer."""
-        return {"u_cover_size": self.size, "u_cover_columns": self.columns}
-
 
 class CoverMaker:
     """Draws surfels into atlases."""
@@ -63,9 +58,7 @@ class CoverMaker:
     def __init__(self, device: Device) -> None:
         self.device = device
         folder = "techniques/combined/"
-        self._program = Program(
-            device, ShaderSource(folder + "cover.frag.glsl"), _vertex(folder + "cover.vert.glsl")
-        )
+        self._programs = Variants(device, folder + "cover.frag.glsl", folder + "cover.vert.glsl")
 
     def new_texture(self, atlas: Atlas) -> Any:
         """Make an atlas's texture."""
@@ -85,8 +78,8 @@ class CoverMaker:
         texture: Any,
     ) -> Iterator[float]:
         """Draw casters, yielding after each bounded piece."""
-        ctx, program = self.device.ctx, self._program
-        fbo = ctx.framebuffer([texture])
+        program = self._programs.get(())
+        fbo = self.device.ctx.framebuffer([texture])
         fbo.clear()
         try:
             for surfels in casters:
@@ -110,19 +103,15 @@ class CoverMaker:
         ctx.blend_func = moderngl.ONE, moderngl.ONE
         ctx.point_size = 2.0
         try:
-            self._program.draw_buffers(surfels.buffer, "3f4 3f4 3f4 3f4", ATTRIBUTES, None, first, count)
+            self._programs.get(()).draw_buffers(
+                surfels.buffer, "3f4 3f4 3f4 3f4", ATTRIBUTES, None, first, count
+            )
         finally:
             ctx.disable(moderngl.BLEND)
 
     def release(self) -> None:
         """Free the program."""
-        self._program.release()
-
-
-def _vertex(file: str) -> str:
-    from ...gpu.program import PACKAGE
-
-    return (PACKAGE / file).read_text(encoding="utf-8")
+        self._programs.release()
 
 
 def _matrix(lattice: Lattice, middle: np.ndarray) -> tuple[float, ...]:

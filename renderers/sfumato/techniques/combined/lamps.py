@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...gpu import Device
+from ...scene.vectors import box_corners
 from ..frame import Frame
 from ..light_cache import LightCache
 from ..light_volume import Casters, LightGrid, LightSweeper, grid_for
@@ -66,9 +67,7 @@ class Lit:
 def corners_of(visible: np.ndarray | None, meshes: tuple[MeshBuffers, ...]) -> np.ndarray | None:
     """Return corners in world mm of boxes around all that is seen; None if nothing is."""
     boxes = [] if visible is None else [visible]
-    for mesh in meshes:
-        b = mesh.bounds
-        boxes.append(np.array([[b[i, 0], b[j, 1], b[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)]))
+    boxes += [box_corners(mesh.bounds) for mesh in meshes]
     return np.concatenate(boxes) if boxes else None
 
 

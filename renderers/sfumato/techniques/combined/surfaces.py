@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ...gpu import Device, Program, ShaderSource
-from ...gpu.program import PACKAGE
+from ...gpu import Device, Program, Variants
 from ...gpu.surface_target import SurfaceTarget
+from ...scene.vectors import box_corners
 from ..frame import Frame
 from ..marcher import near_depth
 from .meshes import LAYOUT, MeshBuffers, Shown
@@ -25,13 +25,7 @@ class SurfacePainter:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        vertex = (PACKAGE / _FOLDER / "surface.vert.glsl").read_text(encoding="utf-8")
-        self._programs = [
-            Program(
-                device, ShaderSource(_FOLDER + "surface.frag.glsl", (("CUT", cut), ("CLIPS", cut))), vertex
-            )
-            for cut in (0, 1)
-        ]
+        self._programs = Variants(device, _FOLDER + "surface.frag.glsl", _FOLDER + "surface.vert.glsl")
         self.target: SurfaceTarget | None = None
 
     def draw(
@@ -42,7 +36,7 @@ class SurfacePainter:
         target.clear()
         uniforms = _camera(frame, meshes, margin)
         for item, mesh in zip(shown, meshes, strict=True):
-            program = self._programs[int(item.clipped)]
+            program = self._programs.get((("CUT", int(item.clipped)), ("CLIPS", int(item.clipped))))
             program.set(**uniforms, **_place(frame, mesh))
             if item.clipped:
                 matrix = frame.volume.texture_from_world.T.ravel().tolist()
@@ -70,8 +64,7 @@ class SurfacePainter:
 
     def release(self) -> None:
         """Free the GPU objects."""
-        for program in self._programs:
-            program.release()
+        self._programs.release()
         self._release_target()
 
     def _release_target(self) -> None:
@@ -83,19 +76,11 @@ class SurfacePainter:
 def depth_range(frame: Frame, meshes: tuple[MeshBuffers, ...]) -> tuple[float, float]:
     """Return the nearest and farthest depth in mm that meshes can have before the camera."""
     basis = frame.camera.basis()
-    depths = [
-        (_box(mesh.bounds) - frame.camera.position) @ np.asarray(basis.forward) for mesh in meshes
-    ]  # fmt: skip
+    depths = [(box_corners(m.bounds) - frame.camera.position) @ np.asarray(basis.forward) for m in meshes]
     low, high = (float(f(depths)) for f in (np.min, np.max))
     room = 1e-3 * max(high - low, abs(low), abs(high), 1e-3)  # flat things too have room in 32 bits
     low, high = max(low - room, near_depth(frame)), high + room
     return low, max(high, low + room)
-
-
-def _box(bounds: np.ndarray) -> np.ndarray:
-    return np.array(
-        [[bounds[i, 0], bounds[j, 1], bounds[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)]
-    )
 
 
 def _camera(frame: Frame, meshes: tuple[MeshBuffers, ...], margin: int) -> dict[str, Any]:
