@@ -16,6 +16,7 @@
 #include "clip"
 #include "transfer"
 #include "skip"
+#include "slope"
 uniform vec3 u_light_color[4];       // linear RGB times intensity
 uniform vec3 u_towards[4];           // unit vector to the light, world
 
@@ -28,7 +29,6 @@ uniform float u_near;            // mm
 uniform float u_far;             // mm
 uniform float u_ambient, u_diffuse, u_specular, u_shininess;
 uniform float u_shadow_floor;    // least visibility of a lamp
-uniform float u_edge;            // gradient (normalised value per mm) at which a highlight has half its strength
 
 #if SHADING == 1 || SHADING == 3
 // Where a view ray meets a plane of the stack, and the value there.

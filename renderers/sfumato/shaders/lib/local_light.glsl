@@ -38,13 +38,9 @@ vec3 local_lit(vec3 color, float alpha, vec3 t, vec3 view) {
     color *= alpha;
 #if LIGHTS > 0
     vec3 lamps = vec3(0.0);
-    vec3 normal = volume_gradient(t);
-    float strength = length(normal), surface = strength / (strength + u_edge);
-    normal /= max(strength, 1e-20);
-    // Turned to the viewer, since a gradient has no outside.
-    if (dot(normal, view) < 0.0) normal = -normal;
+    Slope slope = slope_at(t, view);
     for (int l = 0; l < LIGHTS; ++l) {
-        lamps += u_light_color[l] * mix(1.0, max(dot(normal, u_towards[l]), 0.0), u_facing * surface);
+        lamps += u_light_color[l] * mix(1.0, max(dot(slope.normal, u_towards[l]), 0.0), u_facing * slope.surface);
     }
     return with_lamps(color, around, color * lamps);
 #else

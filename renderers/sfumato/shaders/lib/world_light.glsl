@@ -15,14 +15,9 @@ uniform float u_facing;              // how much a surface's slope counts, 0 to 
 // Colour that a segment of opacity alpha sends to the eye; t and p_world are its middle.
 vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
 #if FACING || SPECULAR
-    vec3 normal = volume_gradient(t);
-    float strength = length(normal);
-    float surface = strength / (strength + u_edge);
-    normal /= max(strength, 1e-20);
-    // Turned to the viewer, since a gradient has no outside.
-    if (dot(normal, view) < 0.0) normal = -normal;
+    Slope slope = slope_at(t, view);
     // A surface gets the light that is just before it; within it are the steps of the cells.
-    t += mat3(u_texture_from_world) * normal * (u_world_lift * surface);
+    t += mat3(u_texture_from_world) * slope.normal * (u_world_lift * slope.surface);
 #endif
     vec4 light = textureLod(u_world_light, t * u_world_scale + u_world_offset, 0.0);
     vec3 sum = light.rgb, shine = vec3(0.0);
@@ -39,14 +34,14 @@ vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
         float factor = visible[l];
 #if FACING || SPECULAR
         vec3 towards = normalize(u_lamp_place[l].xyz - u_lamp_place[l].w * p_world);
-        float facing = dot(normal, towards);
+        float facing = dot(slope.normal, towards);
 #endif
 #if SPECULAR
-        float gleam = facing > 0.0 ? pow(max(dot(normal, normalize(towards + view)), 0.0), u_shininess) : 0.0;
-        shine += u_light_color[l] * (factor * u_specular * gleam * surface);
+        float gleam = facing > 0.0 ? pow(max(dot(slope.normal, normalize(towards + view)), 0.0), u_shininess) : 0.0;
+        shine += u_light_color[l] * (factor * u_specular * gleam * slope.surface);
 #endif
 #if FACING
-        factor *= mix(1.0, max(facing, 0.0), u_facing * surface);
+        factor *= mix(1.0, max(facing, 0.0), u_facing * slope.surface);
 #endif
         sum += u_light_color[l] * factor;
     }
