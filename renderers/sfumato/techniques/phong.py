@@ -8,6 +8,24 @@ from typing import Annotated
 from ..scene.params import Param
 from ..scene.scene import TechniqueParams
 
+Shininess = Annotated[
+    float,
+    Param(
+        "Sharpness of highlights", label="Shininess", ge=1, le=1000, soft=(1, 200), tab="light", level="more"
+    ),
+]
+SlopeShading = Annotated[
+    float,
+    Param(
+        "How much surfaces that turn away from a lamp are darker",
+        label="Slope shading",
+        ge=0,
+        le=1,
+        tab="light",
+        level="more",
+    ),
+]
+
 
 @dataclass(frozen=True)
 class PhongParams(TechniqueParams):
@@ -23,15 +41,4 @@ class PhongParams(TechniqueParams):
     specular: Annotated[
         float, Param("Strength of highlights", label="Specular", ge=0, le=2, soft=(0, 1), tab="light")
     ] = 0.25
-    shininess: Annotated[
-        float,
-        Param(
-            "Sharpness of highlights",
-            label="Shininess",
-            ge=1,
-            le=1000,
-            soft=(1, 200),
-            tab="light",
-            level="more",
-        ),
-    ] = 40.0
+    shininess: Shininess = 40.0

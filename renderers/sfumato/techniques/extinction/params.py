@@ -7,6 +7,7 @@ from typing import Annotated
 
 from ...scene.params import Param
 from ...scene.scene import TechniqueParams
+from ..phong import Shininess, SlopeShading
 
 
 @dataclass(frozen=True)
@@ -141,32 +142,11 @@ class ExtinctionParams(TechniqueParams):
             level="more",
         ),
     ] = 7
-    facing: Annotated[
-        float,
-        Param(
-            "How much surfaces that turn away from a lamp are darker",
-            label="Slope shading",
-            ge=0,
-            le=1,
-            tab="light",
-            level="more",
-        ),
-    ] = 0.7
+    facing: SlopeShading = 0.7
     specular: Annotated[
         float, Param("Strength of highlights", label="Highlights", ge=0, le=2, soft=(0, 1), tab="light")
     ] = 0.0
-    shininess: Annotated[
-        float,
-        Param(
-            "Sharpness of highlights",
-            label="Shininess",
-            ge=1,
-            le=1000,
-            soft=(1, 200),
-            tab="light",
-            level="more",
-        ),
-    ] = 40.0
+    shininess: Shininess = 40.0
     resolution: Annotated[
         int | None,
         Param(

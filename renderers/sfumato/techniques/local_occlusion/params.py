@@ -7,6 +7,7 @@ from typing import Annotated
 
 from ...scene.params import Param
 from ...scene.scene import TechniqueParams
+from ..phong import SlopeShading
 
 
 @dataclass(frozen=True)
@@ -157,17 +158,7 @@ class LocalOcclusionParams(TechniqueParams):
             level="more",
         ),
     ] = 0.0
-    facing: Annotated[
-        float,
-        Param(
-            "How much surfaces that turn away from a lamp are darker",
-            label="Slope shading",
-            ge=0,
-            le=1,
-            tab="light",
-            level="more",
-        ),
-    ] = 1.0
+    facing: SlopeShading = 1.0
     reduction: Annotated[
         float | None,
         Param(

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from ...scene.params import Param
 from ...scene.scene import TechniqueParams
+from ..phong import Shininess
 
 
 @dataclass(frozen=True)
@@ -25,18 +26,7 @@ class ShadowParams(TechniqueParams):
             tab="light",
         ),
     ] = 0.0
-    shininess: Annotated[
-        float,
-        Param(
-            "Sharpness of highlights",
-            label="Shininess",
-            ge=1,
-            le=1000,
-            soft=(1, 200),
-            tab="light",
-            level="more",
-        ),
-    ] = 40.0
+    shininess: Shininess = 40.0
     ambient: Annotated[
         float, Param("Share of each lamp that no shadow takes away", label="Ambient", ge=0, le=1, tab="light")
     ] = 0.0
