@@ -161,10 +161,10 @@ class HistoryRow(QListWidget):
     def _want_missing(self) -> None:
         """Have the worker draw what was never seen, the nearest first."""
         volume = self._editor.scene.volume
-        near = sorted(self.steps, key=lambda step: abs(self.steps.index(step) - self.position))
+        places = sorted(range(len(self.steps)), key=lambda place: abs(place - self.position))
         missing: dict[Any, Scene] = {
             id(step.scene): step.scene
-            for step in near
+            for step in (self.steps[place] for place in places)
             if step.scene.volume is volume is not None and self.pictures.of(step.scene) is None
         }
         if missing and self.isVisible():

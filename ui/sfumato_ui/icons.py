@@ -31,7 +31,6 @@ _GLYPHS = {
     "close": "ph.x",
     "vtk": "ph.columns",
     "history": "ph.clock-counter-clockwise",
-    "compare": "ph.square-split-horizontal",
     "undock": "ph.arrow-square-out",
     "error": "ph.warning",
     "info": "ph.info",

@@ -44,9 +44,7 @@ class VolumeTexture:
 def survey_volume(volume: Volume) -> VolumeTexture:
     """Return what is known of a volume without its voxels on the GPU."""
     voxels, domain = normalised(volume)
-    scale = np.float32(1 / np.iinfo(voxels.dtype).max)
-    low, high = block_extremes(voxels)
-    return VolumeTexture(None, domain, low * scale, high * scale, 0)
+    return VolumeTexture(None, domain, *_normalised_extremes(voxels), 0)
 
 
 def upload_volume(device: Device, volume: Volume) -> VolumeTexture:
@@ -64,13 +62,18 @@ def upload_volume(device: Device, volume: Volume) -> VolumeTexture:
             "smaller volume",
         )
     voxels, domain = normalised(volume)
-    scale = np.float32(1 / np.iinfo(voxels.dtype).max)
-    low, high = block_extremes(voxels)
+    low, high = _normalised_extremes(voxels)
     with device.checked(f"{voxels.nbytes >> 20} MiB for the volume", "smaller volume"):
         texture = device.ctx.texture3d(volume.dims, 1, voxels, alignment=1, dtype=_DTYPE[voxels.itemsize])
     texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
     texture.repeat_x = texture.repeat_y = texture.repeat_z = False
-    return VolumeTexture(texture, domain, low * scale, high * scale, voxels.nbytes)
+    return VolumeTexture(texture, domain, low, high, voxels.nbytes)
+
+
+def _normalised_extremes(voxels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    scale = np.float32(1 / np.iinfo(voxels.dtype).max)
+    low, high = block_extremes(voxels)
+    return low * scale, high * scale
 
 
 _DTYPE = {1: "f1", 2: "nu2"}

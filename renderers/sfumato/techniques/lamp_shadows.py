@@ -50,30 +50,29 @@ class LampShadows:
         self.cache = LightCache(self.sweeper.new_texture, store=device.store)
         self._slab_term = SlabTexture(device)
 
-    def prepare(self, frame: Frame, material: Material, share: float = 0.5) -> Generator[float, None, Lamps]:
-        """Sweep what is not kept, yielding progress up to a share of the frame's; returns the lamps."""
+    def prepare(self, frame: Frame, material: Material) -> Generator[float, None, Lamps]:
+        """Sweep what is not kept, yielding progress up to half of the frame's; returns the lamps."""
         angles, grids, textures = lamp_angles(frame), list[LightGrid](), list[Any]()
         for light, angle in zip(frame.scene.active_lights, angles, strict=True):
             grid = grid_for(frame, material, angle, light.aperture)
-            sweep = functools.partial(self._sweep, frame, material, grid, len(grids), share)
+            sweep = functools.partial(self._sweep, frame, material, grid, len(grids))
             textures.append((yield from self.cache.swept(grid.key, grid.size, sweep, len(grids))))
             grids.append(grid)
         return Lamps(angles, grids, textures, lay_ways(frame, [tilt for tilt, _ in angles], grids))
 
     def _sweep(
-        self, frame: Frame, material: Material, grid: LightGrid, number: int, share: float, texture: Any
+        self, frame: Frame, material: Material, grid: LightGrid, number: int, texture: Any
     ) -> Iterator[float]:
         """Sweep a lamp, yielding progress."""
         for done in self.sweeper.sweep(frame, material, grid, texture):
-            yield share * (number + done) / len(frame.scene.active_lights)
+            yield 0.5 * (number + done) / len(frame.scene.active_lights)
 
     def bind(self, program: Program, frame: Frame, lamps: Lamps) -> None:
         """Set what ``light_volume.glsl`` and ``slab.glsl`` need, and the view by slices that they are made for."""
         stack = Stack.through(View.of(frame.camera), crop_corners(frame), frame.step, frame.jitter)
         set_view(program, frame, stack)
+        bind_lamps(program, frame, lamps)
         apertures = [light.aperture for light in frame.scene.active_lights]
-        program.set(**lamp_uniforms(frame, lamps, apertures))
-        program.bind(**{f"u_light{k}": texture for k, texture in enumerate(lamps.textures)})
         self._slab_term.bind(program, frame, [tilt for tilt, _ in lamps.angles], apertures)
 
     def release(self) -> None:
@@ -83,8 +82,9 @@ class LampShadows:
         self._slab_term.release()
 
 
-def lamp_uniforms(frame: Frame, lamps: Lamps, apertures: list[float]) -> dict[str, Any]:
-    """Return where the ray caster finds each lamp's light, and its way there."""
+def bind_lamps(program: Program, frame: Frame, lamps: Lamps) -> None:
+    """Set where a shader finds each lamp's light, and its way there (``light_volume.glsl``)."""
+    apertures = [light.aperture for light in frame.scene.active_lights]
     to_light, length = np.zeros((4, 3), dtype=np.float32), np.zeros(4, dtype=np.float32)
     matrices, rear = np.zeros((4, 4, 4), dtype=np.float32), np.zeros(4, dtype=np.int32)
     for k, (grid, (tilt, _), aperture) in enumerate(zip(lamps.grids, lamps.angles, apertures, strict=True)):
@@ -94,7 +94,8 @@ def lamp_uniforms(frame: Frame, lamps: Lamps, apertures: list[float]) -> dict[st
         length[k] = way * effective_secant(tilt, aperture) * abs(np.cos(np.radians(tilt)))
         matrices[k] = (grid.texture_from_world @ frame.volume.world_from_texture).T
         rear[k] = tilt > 90
-    return {
-        "u_to_light": to_light, "u_near_length": length, "u_light_from_texture": matrices, "u_rear": rear,
-        "u_near_end": lamps.ways.ends.astype(np.float32).ravel(),
-    }  # fmt: skip
+    program.set(
+        u_to_light=to_light, u_near_length=length, u_light_from_texture=matrices, u_rear=rear,
+        u_near_end=lamps.ways.ends.astype(np.float32).ravel(),
+    )  # fmt: skip
+    program.bind(**{f"u_light{k}": texture for k, texture in enumerate(lamps.textures)})

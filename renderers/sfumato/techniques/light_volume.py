@@ -253,11 +253,11 @@ def secant_uniforms(secants: np.ndarray) -> dict[str, Any]:
     return {"u_secants": tuple(nodes.tolist()), **packed}
 
 
-def cover_corners(slab: int, columns: int, size: tuple[int, int], direction: int = 1) -> np.ndarray:
+def cover_corners(slab: int, columns: int, size: tuple[int, int]) -> np.ndarray:
     """Return where in a picture of coverage a slab lies and the two that light met before; -1 where there is none."""
     corners = np.full((3, 2), -1, np.int32)
     for k in range(3):
-        at = slab - direction * k
+        at = slab - k
         if at >= 0:
             corners[k] = at % columns * size[0], at // columns * size[1]
     return corners

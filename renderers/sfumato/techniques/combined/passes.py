@@ -12,7 +12,7 @@ import numpy as np
 from ...gpu import Device, Program, Variants
 from ...gpu.surface_target import NOTHING
 from ..frame import Frame
-from ..lamp_shadows import Lamps, lamp_uniforms
+from ..lamp_shadows import Lamps, bind_lamps
 from ..marcher import (
     PIECE_PIXELS,
     VOLUMES,
@@ -101,7 +101,6 @@ class CombinedPainter:
             yield from self._put_together(frame, stage, lamps, margin)
         else:
             self.marcher.finish(frame)
-        # The frame may be a stand-in's: what the caller asks of it is in the target.
         yield 1.0
 
     def _stage(self, frame: Frame, shown: tuple[Shown, ...]) -> Generator[float, None, Stage | None]:
@@ -157,10 +156,8 @@ class CombinedPainter:
         return program
 
     def _bind_lamps(self, program: Program, frame: Frame, stage: Stage, lamps: list[Lit], ways: Ways) -> None:
-        apertures = [light.aperture for light in frame.scene.active_lights]
         swept = Lamps(stage.angles, [lit.grid for lit in lamps], [lit.light for lit in lamps], ways)
-        program.set(**lamp_uniforms(frame, swept, apertures))
-        program.bind(**{f"u_light{k}": lit.light for k, lit in enumerate(lamps)})
+        bind_lamps(program, frame, swept)
 
     # -- surfaces, and the volume over them ---------------------------------------------------------
     def _put_together(self, frame: Frame, stage: Stage, lamps: list[Lit], margin: int) -> Iterator[float]:

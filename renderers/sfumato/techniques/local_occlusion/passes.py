@@ -93,7 +93,7 @@ class LocalOcclusionPainter:
         if params.lamps == "diffuse":
             variant = replace(variant, lights=active)
         elif params.lamps == "shadows" and active:
-            lamps = yield from self.shadows.prepare(frame, material, 0.5)
+            lamps = yield from self.shadows.prepare(frame, material)
             variant = replace(
                 variant, slices=True, shading=VOLUMES, lights=active, near=lamps.ways.samples, adaptive=False
             )
