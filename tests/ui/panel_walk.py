@@ -305,6 +305,12 @@ def main(font_factor: float, folder: Path) -> None:
                 window.grab().save(f"{sys.argv[3]}/{theme}-{tab}.png")
         window.activateWindow()
         wrong += walk_window(window, theme)
+        window.panel.setCurrentIndex(0)
+        window.drawer.open("compare")
+        for mode in ("wipe", "techniques", "rigs"):
+            window.compare.set_mode(mode)
+            wrong += Walk(window, window.centralWidget(), f"{theme}, compare by {mode}").check()
+        window.drawer.open("history")
         for dialog in dialogs(window, folder):
             wrong += walk_dialog(dialog, theme)
     window.editor.document.mark_saved()

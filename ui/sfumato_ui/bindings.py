@@ -49,6 +49,7 @@ _FIXED = (
     Command("undo", "Undo", "Edit", ("Ctrl+Z",)),
     Command("redo", "Redo", "Edit", ("Ctrl+Shift+Z", "Ctrl+Y")),
     Command("history", "History", "Window", ("H",)),
+    Command("compare", "Compare", "Window", ("K",)),
     Command("vtk", "VTK view", "Window", ("V",)),
     Command("theme", "Other theme (dark or light)", "Window"),
     Command("tab-light", "Panel: Light", "Window", ("Alt+1",)),

@@ -31,6 +31,7 @@ _GLYPHS = {
     "close": "ph.x",
     "vtk": "ph.columns",
     "history": "ph.clock-counter-clockwise",
+    "compare": "ph.square-half",
     "undock": "ph.arrow-square-out",
     "error": "ph.warning",
     "info": "ph.info",

@@ -11,6 +11,7 @@ from qtpy.QtGui import QImage
 
 from sfumato import Scene
 from sfumato.export.tiles import Guest
+from sfumato.techniques.frame import Quality
 
 #: Jittered frames that a still picture accumulates.
 STILL_FRAMES = 8
@@ -63,12 +64,17 @@ class SaveRequest:
 
 @dataclass(frozen=True)
 class ThumbnailRequest:
-    """A control wants a small picture; ``group`` and ``key`` are its own names for it."""
+    """A control wants a picture when there is time; ``group`` and ``key`` are its own names for it.
+
+    Without quality and frames it is drawn coarsely, as suits a small one.
+    """
 
     group: str
     key: Hashable
     scene: Scene
     size: tuple[int, int]
+    quality: Quality | None = None
+    frames: int = 0
 
 
 def affordable_frames(most: int, drawn: int, seconds: float) -> int:

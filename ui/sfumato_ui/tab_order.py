@@ -15,6 +15,8 @@ def in_visual_order(root: QWidget) -> Iterator[QWidget]:
         yield root
     if isinstance(root, QAbstractSpinBox | QComboBox):
         return
+    for over in getattr(root, "controls_over", ()):
+        yield from in_visual_order(over)
     if isinstance(root, QTabWidget):
         yield root.tabBar()
         for i in range(root.count()):

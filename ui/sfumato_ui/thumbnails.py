@@ -17,6 +17,7 @@ from qtpy.QtCore import QObject, Signal
 from qtpy.QtGui import QImage
 
 from sfumato import Scene, Volume
+from sfumato.techniques.frame import Quality
 
 from .jobs import ThumbnailRequest
 from .worker import RenderWorker
@@ -59,7 +60,16 @@ class Thumbnails(QObject):
         """Whether every picture that was wanted is there."""
         return not any(self._wanted.values())
 
-    def want(self, group: str, scenes: Mapping[Hashable, Scene], size: tuple[int, int]) -> None:
+    def want(
+        self,
+        group: str,
+        scenes: Mapping[Hashable, Scene],
+        size: tuple[int, int],
+        *,
+        quality: Quality | None = None,
+        frames: int = 0,
+        first: bool = False,
+    ) -> None:
         """Want pictures of scenes, instead of all that this group still wants.
 
         A picture of the same scene that is there already is told at once.
@@ -72,13 +82,22 @@ class Thumbnails(QObject):
             A scene for each key, in the order in which they are to be drawn; each needs a volume.
         size : (int, int)
             Width and height in device pixels.
+        quality, frames : Quality, int
+            Those of a small picture, if not given.
+        first : bool
+            Whether they are drawn before those of other groups.
         """
         looks = {key: _Look.of(scene, size) for key, scene in scenes.items()}
         known = {key: self._known(group, key, look) for key, look in looks.items()}
         open_wishes = {key: scene for key, scene in scenes.items() if known[key] is None}
         self._wanted[group] = {key: looks[key] for key in open_wishes}
         self._worker.want_thumbnails(
-            group, [ThumbnailRequest(group, key, scene, size) for key, scene in open_wishes.items()]
+            group,
+            [
+                ThumbnailRequest(group, key, scene, size, quality, frames)
+                for key, scene in open_wishes.items()
+            ],
+            first,
         )
         for key, image in known.items():
             if image is not None:

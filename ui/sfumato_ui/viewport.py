@@ -56,6 +56,8 @@ class Viewport(QWidget):
 
     #: The size in pixels changed.
     resized = Signal()
+    #: A picture is shown.
+    shown = Signal(object)
     #: The user moved the lamp in the picture (for the hint).
     lamp_moved = Signal()
 
@@ -79,6 +81,8 @@ class Viewport(QWidget):
         }
         self.shadow_bar = ShadowBar(editor, shadow)
         self.hint = ""
+        #: Controls that lie over the picture; Tab reaches them after it.
+        self.controls_over: list[QWidget] = []
         self.empty_text = "Drop a volume or a folder here, or press Ctrl+O"
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -164,6 +168,8 @@ class Viewport(QWidget):
         """Show a picture, or none."""
         self._picture = picture
         self.update()
+        if picture is not None:
+            self.shown.emit(picture)
 
     def set_hint(self, text: str) -> None:
         """Show a hint on the picture; nothing, if the text is empty."""

@@ -24,6 +24,7 @@ from sfumato import Document, Scene
 from . import camera_moves
 from .autosave import Autosave
 from .bars import ToolStrip, TopBar
+from .compare import ComparePage
 from .drawer import Drawer
 from .driver import ViewDriver
 from .editing import Editor
@@ -80,6 +81,7 @@ class MainWindow(QMainWindow):
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
         self.drawer = Drawer()
         self.history = HistoryRow(self.editor, self.thumbnails)
+        self.compare = ComparePage(self.editor, self.viewport, self.thumbnails, self.history)
         self.light_page = LightPage(self.editor, self.thumbnails)
         self.material_page = MaterialPage(self.editor)
         self.material_page.use_thumbnails(self.thumbnails)
@@ -128,6 +130,11 @@ class MainWindow(QMainWindow):
         self.status.add_button(
             self.drawer.add("history", "History", "Every step, to return to", self.history)
         )
+        self.status.add_button(
+            self.drawer.add(
+                "compare", "Compare", "Against a technique or a step of the history", self.compare
+            )
+        )
         grid.addWidget(self.drawer, 2, 0, 1, 2)
         grid.addWidget(self.status, 3, 0, 1, 3)
         grid.setRowStretch(1, 1)
@@ -165,6 +172,8 @@ class MainWindow(QMainWindow):
         editor.rejected.connect(self.messages.show_error)
         worker.picture.connect(self.status.show_picture)
         worker.picture.connect(self.history.see)
+        self.viewport.shown.connect(self.compare.see)
+        self.drawer.changed.connect(lambda page: self.compare.end() if page != "compare" else None)
         worker.progress.connect(self.status.show_progress)
         worker.ready.connect(self.status.show_renderer)
         self.files.opened.connect(self._show_document)

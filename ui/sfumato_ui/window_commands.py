@@ -30,6 +30,7 @@ def window_commands(window: MainWindow) -> Commands:
         "undo": window.editor.undo,
         "redo": window.editor.redo,
         "history": lambda: window.drawer.toggle("history"),
+        "compare": lambda: window.drawer.toggle("compare"),
         "vtk": window.strip.vtk.toggle,
         "theme": lambda: window.set_theme(_other_theme()),
         "fit": lambda: window.look(""),

@@ -23,3 +23,8 @@ def one_line(error: BaseException) -> str:
     frame = traceback.extract_tb(error.__traceback__)[-1]
     text = (str(error).splitlines() or [""])[0]
     return f"{type(error).__name__}: {text} ({frame.filename.rsplit('/', 1)[-1]}, line {frame.lineno})"
+
+
+def duration(seconds: float) -> str:
+    """Return a short time in words."""
+    return f"{1000 * seconds:.0f} ms" if seconds < 1 else f"{seconds:.1f} s"

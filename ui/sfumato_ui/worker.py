@@ -111,10 +111,11 @@ class RenderWorker(QObject):
         """Draw what follows at a part (0 to 1) of the window's resolution: the device has no room for more."""
         self._scale = scale
 
-    def want_thumbnails(self, group: str, requests: list[ThumbnailRequest]) -> None:
+    def want_thumbnails(self, group: str, requests: list[ThumbnailRequest], first: bool = False) -> None:
         """Ask for small pictures when there is nothing else to do, instead of all others of their group."""
         with self._wake:
-            self._thumbnails = [r for r in self._thumbnails if r.group != group] + requests
+            others = [r for r in self._thumbnails if r.group != group]
+            self._thumbnails = requests + others if first else others + requests
             self._wake.notify()
 
     def ask_to_stop(self) -> None:
@@ -246,12 +247,15 @@ class RenderWorker(QObject):
     def _draw_thumbnail(self, renderer: Any, request: ThumbnailRequest) -> None:
         """Draw a thumbnail; a wish stays open if a view or a save comes in between."""
         try:
-            with _accumulation(renderer, request.scene, request.size, THUMBNAIL) as accumulation:
-                for _ in range(THUMBNAIL_FRAMES):
+            quality = request.quality or THUMBNAIL
+            with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
+                for _ in range(request.frames or THUMBNAIL_FRAMES):
+                    started = time.perf_counter()
                     for _ in accumulation.add_frame():
                         if self._stopping or self._view or self._save or not self._still_wanted(request):
                             return
                 image = image_of(accumulation)
+                image.setText("seconds", f"{time.perf_counter() - started:.6f}")  # of the last frame
         except Exception:
             # A scene that cannot be drawn says so when it is the picture; here its place stays empty.
             self._drop_thumbnail(request)
