@@ -12,6 +12,7 @@ from qtpy.QtWidgets import QApplication
 from sfumato import Scene
 from sfumato.techniques import techniques
 from sfumato_ui.difference import color_difference, difference_picture
+from sfumato_ui.quality import QUALITIES, remember_quality
 from sfumato_ui.window import MainWindow
 
 from .conftest import Hand, MakeWindow
@@ -21,8 +22,9 @@ LEFT = Qt.MouseButton.LeftButton
 
 @pytest.fixture
 def window(make_window: MakeWindow, ball_scene: Scene, qtbot: QtBot) -> MainWindow:
-    """A window on the ball, lit by a technique that is quick, with its first picture."""
-    made = make_window(ball_scene.with_(technique="raycast-phong"), size=(680, 480))
+    """A window on the ball, lit by a technique that is quick, in two frames, with its first picture."""
+    remember_quality(QUALITIES[0])
+    made = make_window(ball_scene.with_(technique="raycast-phong"), size=(640, 400))
     Hand(made, qtbot).wait_for_picture()
     return made
 
@@ -34,6 +36,11 @@ def pick(window: MainWindow, name: str, qtbot: QtBot) -> None:
     qtbot.keyClick(box, Qt.Key.Key_Home)
     for _ in range(box.findData(name)):
         qtbot.keyClick(box, Qt.Key.Key_Down)
+
+
+def is_settled(window: MainWindow) -> bool:
+    picture = window.viewport.picture
+    return picture is not None and picture.settled
 
 
 def drawn(window: MainWindow, qtbot: QtBot) -> QImage:
@@ -59,14 +66,18 @@ def test_wipe_against_another_technique(window: MainWindow, hand: Hand, qtbot: Q
     qtbot.mouseClick(window.compare.wipe, LEFT)
     assert window.compare.handle.isVisible()
     drawn(window, qtbot)
-    hand.wait_for_picture()
+    qtbot.waitUntil(lambda: is_settled(window), timeout=90_000)
     height = window.viewport.height()
     qtbot.waitUntil(lambda: window.compare.handle.height() == height)
     # The handle goes to the left by the mouse: what was the present picture there is the other now.
     handle = window.compare.handle
     middle = handle.rect().center()
     present = column(window, 0.35)
-    hand.drag(handle, middle, middle - QPoint(window.viewport.width() // 4, 0))
+    qtbot.mousePress(handle, LEFT, pos=middle)
+    for part in (0.45, 0.4, 0.35, 0.3, 0.25):
+        there = QPoint(round(part * window.viewport.width()), middle.y())
+        qtbot.mouseMove(handle, handle.mapFrom(window.viewport, there))  # the handle has moved with the hand
+    qtbot.mouseRelease(handle, LEFT)
     assert handle.fraction == pytest.approx(0.25, abs=0.02)
     assert np.abs(column(window, 0.35) - present).max() > 8
     # And by keys all the way to the right, where only the present picture is left.

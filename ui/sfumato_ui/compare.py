@@ -9,7 +9,7 @@ from __future__ import annotations
 import threading
 from typing import Any
 
-from qtpy.QtCore import QObject, QTimer, Signal
+from qtpy.QtCore import QObject, Qt, QTimer, Signal
 from qtpy.QtGui import QImage
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QWidget
 
@@ -97,7 +97,6 @@ class ComparePage(QWidget):
 
     def _lay_out(self) -> None:
         self.against.setAccessibleName("Compare the picture with")
-        self.against.setMinimumWidth(240)
         self.told.setProperty("muted", True)
         self.told.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         row = QHBoxLayout(self)
@@ -132,12 +131,15 @@ class ComparePage(QWidget):
     # -- against what -----------------------------------------------------------------------------
     def _fill(self) -> None:
         """Name the step that is marked in the history, and all techniques."""
-        name = f"History: {self._step_words()}"
+        metrics = self.fontMetrics()
+        longest = max(metrics.horizontalAdvance(t.title) for t in techniques().values())
+        name = metrics.elidedText(f"History: {self._step_words()}", Qt.TextElideMode.ElideRight, longest)
         if not self.against.count():
             self.against.addItem(name, STEP)
             for technique in techniques().values():
                 self.against.addItem(technique.title, technique.id)
             self.against.setCurrentIndex(self.against.findData("raycast"))
+            self.against.setFixedWidth(longest + 60)
         elif self.against.itemText(0) != name:
             self.against.setItemText(0, name)
             if self.against.currentData() == STEP:
@@ -179,6 +181,9 @@ class ComparePage(QWidget):
             widget.place()
             widget.setVisible(on)
             widget.raise_()
+        # What lies below a grid cannot be reached.
+        focus = Qt.FocusPolicy.NoFocus if self.mode in self.grids else Qt.FocusPolicy.StrongFocus
+        self._viewport.setFocusPolicy(focus)
         self.told.setText("")
         if self._paired:
             self._show()

@@ -117,8 +117,10 @@ class GridCell(QAbstractButton):
             painter.setPen(QPen(QColor(DARK.accent), 3))
             painter.drawRect(self.rect().adjusted(1, 1, -2, -2))
         if self.hasFocus() or self.underMouse():
-            painter.setPen(QPen(QColor(255, 255, 255), 2))
-            painter.drawRect(self.rect().adjusted(4, 4, -5, -5))
+            # Dark beside light: seen on any picture.
+            for color, width in ((QColor(20, 20, 20), 6), (QColor(255, 255, 255), 2)):
+                painter.setPen(QPen(color, width))
+                painter.drawRect(self.rect().adjusted(5, 5, -6, -6))
 
 
 class CompareGrid(QWidget):

@@ -8,7 +8,9 @@ import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QImage, QPainter
 
+from sfumato import Camera
 from sfumato.export.encode import srgb
+from sfumato.export.scale_bar import SHARE, round_length, words_for
 from sfumato.geometry import ColorBar
 
 #: Radius of the hemisphere on which lamps are moved, in the shorter side of the picture; with the ring
@@ -65,6 +67,30 @@ def draw_badge(painter: QPainter, area: QRect, text: str) -> None:
     metrics = painter.fontMetrics()
     width, height = metrics.horizontalAdvance(text) + 20, metrics.height() + 8
     draw_text(painter, QRectF(area.right() - width - 7, area.top() + 8, width, height), text)
+
+
+def draw_scale_bar(painter: QPainter, area: QRect, camera: Camera, lift: float = 0.0) -> None:
+    """Draw a bar of true length in the lower right corner of an orthographic picture, ``lift`` pixels higher."""
+    if not camera.parallel_projection:
+        return
+    length, pixels = scale_bar_length(camera, area.width(), area.height())
+    metrics = painter.fontMetrics()
+    text = words_for(length)
+    wide, high = max(pixels, metrics.horizontalAdvance(text)) + 16, metrics.height() + 18
+    box = QRectF(area.right() - wide - 7, area.bottom() - high - 7 - lift, wide, high)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(_SHADE)
+    painter.drawRoundedRect(box, 4, 4)
+    painter.setPen(_INK)
+    painter.drawText(box.adjusted(0, 3, 0, -12), Qt.AlignmentFlag.AlignCenter, text)
+    painter.fillRect(QRectF(box.center().x() - pixels / 2, box.bottom() - 10, pixels, 4), _INK)
+
+
+def scale_bar_length(camera: Camera, width: float, height: float) -> tuple[float, float]:
+    """Return the length in mm of an orthographic picture's scale bar, and the same in pixels of the picture."""
+    per_pixel = 2 * camera.parallel_scale / height
+    length = round_length(SHARE * width * per_pixel)
+    return length, length / per_pixel
 
 
 def draw_color_bars(painter: QPainter, area: QRect, bars: Sequence[ColorBar]) -> None:

@@ -35,6 +35,7 @@ from .clip_planes import ClipPlanes
 from .dial import MOVE
 from .editing import Editor
 from .jobs import Picture
+from .settings import settings
 from .shadow_floor import badge_of
 from .subject import is_open, size_of
 from .theme import DARK, PICTURE_GREY
@@ -49,6 +50,7 @@ ARROW_DEGREES = 5.0
 #: Part of the picture's height that an arrow key with Ctrl pans.
 ARROW_PAN = 0.05
 ZOOM_STEP = 1.12
+SCALE_BAR = "view/scale_bar"
 
 
 class Viewport(QWidget):
@@ -81,6 +83,8 @@ class Viewport(QWidget):
         }
         self.shadow_bar = ShadowBar(editor, shadow)
         self.hint = ""
+        #: Whether an orthographic picture has a bar of true length.
+        self.scale_bar = bool(settings().value(SCALE_BAR, False, type=bool))
         #: Controls that lie over the picture; Tab reaches them after it.
         self.controls_over: list[QWidget] = []
         self.empty_text = "Drop a volume or a folder here, or press Ctrl+O"
@@ -176,6 +180,12 @@ class Viewport(QWidget):
         self.hint = text
         self.update()
 
+    def set_scale_bar(self, on: bool) -> None:
+        """Show a scale bar in orthographic pictures, and remember it."""
+        self.scale_bar = on
+        settings().setValue(SCALE_BAR, on)
+        self.update()
+
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint the picture on neutral grey, then letters, hint and focus."""
         painter = QPainter(self)
@@ -198,6 +208,9 @@ class Viewport(QWidget):
             badge = badge_of(self._picture.scene)
             if badge:
                 overlay.draw_badge(painter, self.rect(), badge)
+        if self.scale_bar and self._picture is not None and scene.camera is not None:
+            lift = self.fontMetrics().height() + 22 if self.hint else 0
+            overlay.draw_scale_bar(painter, self.rect(), scene.camera, lift)
         self._paint_tool(painter)
         if self.hint and self._tool == "orbit" and scene.volume is not None:
             overlay.draw_hint(painter, self.rect(), self.hint)

@@ -161,6 +161,7 @@ class MainWindow(QMainWindow):
         self.view_page.shapes.trace_wanted.connect(self.files.trace)
         self.view_page.view_chosen.connect(self.look)
         self.view_page.theme_chosen.connect(self.set_theme)
+        self.view_page.scale_bar_chosen.connect(self.viewport.set_scale_bar)
         self.view_page.frames_chosen.connect(self.driver.set_frames)
         self.viewport.clips.added.connect(lambda: self.strip.choose("clip"))
         self.light_page.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))

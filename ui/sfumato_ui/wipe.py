@@ -27,6 +27,7 @@ class WipeHandle(QWidget):
         super().__init__(picture)
         self._picture = picture
         self.fraction = 0.5
+        self._held = False
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setCursor(Qt.CursorShape.SplitHCursor)
         self.setAccessibleName("Wipe")
@@ -50,11 +51,16 @@ class WipeHandle(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Take the handle; the picture below does not turn."""
+        self._held = event.button() == Qt.MouseButton.LeftButton
         event.accept()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """Let it go."""
+        self._held = False
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Follow the hand."""
-        if event.buttons() & Qt.MouseButton.LeftButton:
+        if self._held:
             x = self.mapToParent(event.position().toPoint()).x()
             self.set_fraction(x / max(1, self._picture.width()))
 

@@ -29,6 +29,7 @@ from ..geometry_controls import GeometryControls
 from ..jobs import STILL_SECONDS
 from ..quality import QUALITIES, chosen_quality, remember_quality
 from ..section import Section
+from ..settings import settings
 from ..theme import THEMES, current_theme
 from .page import Page
 
@@ -49,6 +50,8 @@ class ViewPage(Page):
     view_chosen = Signal(str)
     #: A still picture is to have so many frames.
     frames_chosen = Signal(int)
+    #: A scale bar is wanted in the picture, or no more.
+    scale_bar_chosen = Signal(bool)
 
     def __init__(self, editor: Editor, clips: ClipPlanes) -> None:
         super().__init__()
@@ -66,6 +69,8 @@ class ViewPage(Page):
         self.more = Section("More", "view_more")
         self.quality = ChoiceBox()
         self.theme = ChoiceBox()
+        self.scale_bar = QCheckBox("Scale bar")
+        self.scale_bar.setChecked(bool(settings().value("view/scale_bar", False, type=bool)))
         # Without clip planes all of it fits into a window of 1280 x 720.
         self.column.setSpacing(4)
         self.add_heading("Camera")
@@ -81,6 +86,7 @@ class ViewPage(Page):
         self.add(self.exposure)
         self.add(self._background_row())
         self.add(self.more)
+        self.more.add(self.scale_bar)
         self.more.add(self._quality_row())
         self.more.add(self.step)
         self.more.add(self._theme_row())
@@ -147,6 +153,7 @@ class ViewPage(Page):
         self.lens.drag_finished.connect(editor.end)
         bind_slider(self.exposure, editor, "exposure", "exposure")
         bind_slider(self.step, editor, "step", "sampling")
+        self.scale_bar.toggled.connect(self.scale_bar_chosen)
         self.quality.activated.connect(self._choose_quality)
         self.theme.activated.connect(lambda i: self.theme_chosen.emit(self.theme.itemData(i)))
         editor.changed.connect(lambda old, new: self.refresh())
@@ -193,3 +200,10 @@ class ViewPage(Page):
             self.parallel.blockSignals(False)
             self.lens.set_number(camera.view_angle)
             self.lens.setEnabled(not camera.parallel_projection)
+        orthographic = camera is not None and camera.parallel_projection
+        self.scale_bar.setEnabled(orthographic)
+        self.scale_bar.setToolTip(
+            "A bar of true length in the picture's lower right corner"
+            if orthographic
+            else "Needs an orthographic view: in perspective, what is nearer is larger"
+        )
