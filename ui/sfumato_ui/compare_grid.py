@@ -77,7 +77,7 @@ class GridCell(QAbstractButton):
         self.setAccessibleName(choice.title)
         self.setToolTip(f"{choice.title}: click to take it")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property
@@ -116,7 +116,7 @@ class GridCell(QAbstractButton):
         if self.present:
             painter.setPen(QPen(QColor(DARK.accent), 3))
             painter.drawRect(self.rect().adjusted(1, 1, -2, -2))
-        if self.hasFocus() or self.underMouse():
+        if self.hasFocus():
             # Dark beside light: seen on any picture.
             for color, width in ((QColor(20, 20, 20), 6), (QColor(255, 255, 255), 2)):
                 painter.setPen(QPen(color, width))
