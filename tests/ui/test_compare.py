@@ -33,7 +33,8 @@ def pick(window: MainWindow, name: str, qtbot: QtBot) -> None:
     """Choose by keys what to compare with."""
     box = window.compare.against
     box.setFocus()
-    qtbot.keyClick(box, Qt.Key.Key_Home)
+    for _ in range(box.count()):
+        qtbot.keyClick(box, Qt.Key.Key_Up)
     for _ in range(box.findData(name)):
         qtbot.keyClick(box, Qt.Key.Key_Down)
 

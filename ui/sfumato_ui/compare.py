@@ -11,7 +11,7 @@ from typing import Any
 
 from qtpy.QtCore import QObject, Qt, QTimer, Signal
 from qtpy.QtGui import QImage
-from qtpy.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QWidget
+from qtpy.QtWidgets import QApplication, QHBoxLayout, QLabel, QPushButton, QSizePolicy, QWidget
 
 from sfumato import Scene, SceneError
 from sfumato.techniques import techniques
@@ -184,7 +184,7 @@ class ComparePage(QWidget):
         # What lies below a grid cannot be reached.
         focus = Qt.FocusPolicy.NoFocus if self.mode in self.grids else Qt.FocusPolicy.StrongFocus
         self._viewport.setFocusPolicy(focus)
-        self.told.setText("")
+        self._tell("", "")
         if self._paired:
             self._show()
             self._ask()
@@ -200,7 +200,10 @@ class ComparePage(QWidget):
     def end(self) -> bool:
         """End comparing; returns whether there was anything to end."""
         comparing = bool(self.mode)
+        inside = self._viewport.isAncestorOf(QApplication.focusWidget() or self)
         self.set_mode("")
+        if inside:
+            self._viewport.setFocus()
         return comparing
 
     # -- drawing ----------------------------------------------------------------------------------
@@ -219,7 +222,7 @@ class ComparePage(QWidget):
         """Have the other picture drawn, once the hand rests."""
         other, size = self.other_scene, self._viewport.pixel_size
         if other is not None and self._image() is None:
-            self._thumbnails.want(GROUP, {size: other}, size, quality=FULL, frames=FRAMES, first=True)
+            self._thumbnails.want(GROUP, {size: other}, size, quality=FULL, frames=FRAMES, first=True, timed=True)
 
     def _on_ready(self, group: str, key: Any, image: QImage) -> None:
         other = self.other_scene
@@ -251,21 +254,25 @@ class ComparePage(QWidget):
             if image is not None and shown is not None and still:
                 self._differences.start(shown.image, image)
         elif image is not None:
-            self.told.setText(_time_words(image))
+            self._tell(_time_words(image), "A frame of the other picture, the light being there already")
         layer.update()
+
+    def _tell(self, words: str, more: str) -> None:
+        self.told.setText(words)
+        self.told.setToolTip(more)
 
     def _on_difference(self, number: int, found: tuple[QImage, Any, float]) -> None:
         if self.mode != "difference" or number != self._differences.number or self._image() is None:
             return
         self.layer.image, bar, mean = found
         self.layer.bars = (bar,)
-        self.told.setText(f"Mean difference ΔE {mean:.1f} (2 is just seen)")
+        self._tell(f"mean ΔE {mean:.1f}", "Mean CIE 1976 colour difference of the two pictures; 2 is just seen")
         self.layer.update()
 
 
 def _time_words(image: QImage) -> str:
     seconds = float(image.text("seconds") or 0)
-    return f"The other picture takes {duration(seconds)} a frame" if seconds else ""
+    return f"{duration(seconds)} a frame" if seconds else ""
 
 
 def _button(text: str, tip: str) -> QPushButton:

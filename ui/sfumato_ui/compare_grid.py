@@ -21,7 +21,7 @@ from .theme import DARK, PICTURE_GREY
 from .thumbnails import Thumbnails
 from .wording import duration
 
-#: Jittered frames of each picture; the time is that of the last one, when the light is there already.
+#: Jittered frames of each picture.
 FRAMES = 2
 QUIET_MS = 300
 #: Takes minutes a frame.
@@ -140,8 +140,7 @@ class CompareGrid(QWidget):
         super().__init__(picture)
         self._picture, self._editor, self._thumbnails, self._group = picture, editor, thumbnails, group
         self.cells = {name: GridCell(choice) for name, choice in choices.items()}
-        self.setAutoFillBackground(True)
-        columns = math.ceil(math.sqrt(len(self.cells)))
+        columns = _columns(len(self.cells))
         grid = QGridLayout(self)
         grid.setContentsMargins(2, 2, 2, 2)
         grid.setSpacing(2)
@@ -155,6 +154,10 @@ class CompareGrid(QWidget):
         editor.changed.connect(lambda old, new: self._on_changed())
         thumbnails.ready.connect(self._on_ready)
         self.hide()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Fill what no cell covers."""
+        QPainter(self).fillRect(self.rect(), QColor(PICTURE_GREY).darker(115))
 
     def place(self) -> None:
         """Cover the picture."""
@@ -189,7 +192,7 @@ class CompareGrid(QWidget):
                 cell.setToolTip(str(error))
                 cell.setEnabled(False)
             cell.set_image(QImage())
-        self._thumbnails.want(self._group, wanted, size, quality=FULL, frames=FRAMES, first=True)
+        self._thumbnails.want(self._group, wanted, size, quality=FULL, frames=FRAMES, first=True, timed=True)
 
     def _on_ready(self, group: str, key: Hashable, image: QImage) -> None:
         if group == self._group and isinstance(key, str) and key in self.cells:
@@ -214,3 +217,8 @@ class CompareGrid(QWidget):
         super().hideEvent(event)
         self._quiet.stop()
         self._thumbnails.forget(self._group)
+
+
+def _columns(count: int) -> int:
+    """Return the columns of a grid: two to four, as many as leave the fewest places empty."""
+    return min((4, 3, 2), key=lambda columns: -count % columns)

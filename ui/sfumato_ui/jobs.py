@@ -66,7 +66,8 @@ class SaveRequest:
 class ThumbnailRequest:
     """A control wants a picture when there is time; ``group`` and ``key`` are its own names for it.
 
-    Without quality and frames it is drawn coarsely, as suits a small one.
+    Without quality and frames it is drawn coarsely, as suits a small one. If ``timed``, the image says by its text
+    "seconds" how long a frame takes.
     """
 
     group: str
@@ -75,6 +76,7 @@ class ThumbnailRequest:
     size: tuple[int, int]
     quality: Quality | None = None
     frames: int = 0
+    timed: bool = False
 
 
 def affordable_frames(most: int, drawn: int, seconds: float) -> int:

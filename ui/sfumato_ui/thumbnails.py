@@ -69,6 +69,7 @@ class Thumbnails(QObject):
         quality: Quality | None = None,
         frames: int = 0,
         first: bool = False,
+        timed: bool = False,
     ) -> None:
         """Want pictures of scenes, instead of all that this group still wants.
 
@@ -86,6 +87,8 @@ class Thumbnails(QObject):
             Those of a small picture, if not given.
         first : bool
             Whether they are drawn before those of other groups.
+        timed : bool
+            Whether the images are to say how long a frame takes (text "seconds").
         """
         looks = {key: _Look.of(scene, size) for key, scene in scenes.items()}
         known = {key: self._known(group, key, look) for key, look in looks.items()}
@@ -94,7 +97,7 @@ class Thumbnails(QObject):
         self._worker.want_thumbnails(
             group,
             [
-                ThumbnailRequest(group, key, scene, size, quality, frames)
+                ThumbnailRequest(group, key, scene, size, quality, frames, timed)
                 for key, scene in open_wishes.items()
             ],
             first,

@@ -35,6 +35,7 @@ def window_commands(window: MainWindow) -> Commands:
         "theme": lambda: window.set_theme(_other_theme()),
         "fit": lambda: window.look(""),
         **{f"tool-{name}": partial(window.strip.choose, name) for name in window.strip.tools},
+        "tool-orbit": partial(_escape, window),
         **{
             f"tab-{name}": partial(window.panel.setCurrentIndex, i)
             for i, name in enumerate(("light", "material", "view"))
@@ -76,3 +77,9 @@ def _light_by(window: MainWindow, technique: str) -> None:
 
 def _other_theme() -> str:
     return next(name for name in THEMES if name != current_theme().name)
+
+
+def _escape(window: MainWindow) -> None:
+    """End what lies over the picture, else the tool."""
+    if not window.compare.end():
+        window.strip.choose("orbit")

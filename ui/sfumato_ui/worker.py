@@ -250,18 +250,34 @@ class RenderWorker(QObject):
             quality = request.quality or THUMBNAIL
             with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
                 for _ in range(request.frames or THUMBNAIL_FRAMES):
-                    started = time.perf_counter()
-                    for _ in accumulation.add_frame():
-                        if self._stopping or self._view or self._save or not self._still_wanted(request):
-                            return
+                    if not self._add_idle_frame(accumulation, request):
+                        return
                 image = image_of(accumulation)
-                image.setText("seconds", f"{time.perf_counter() - started:.6f}")  # of the last frame
+            if request.timed:
+                seconds = self._time_again(renderer, request, quality)
+                if seconds is None:
+                    return
+                image.setText("seconds", f"{seconds:.6f}")
         except Exception:
             # A scene that cannot be drawn says so when it is the picture; here its place stays empty.
             self._drop_thumbnail(request)
             return
         self._drop_thumbnail(request)
         self.thumbnail.emit(request, image)
+
+    def _add_idle_frame(self, accumulation: Any, request: ThumbnailRequest) -> bool:
+        """Draw a frame of a thumbnail; False if it was given up for something more urgent."""
+        for _ in accumulation.add_frame():
+            if self._stopping or self._view or self._save or not self._still_wanted(request):
+                return False
+        return True
+
+    def _time_again(self, renderer: Any, request: ThumbnailRequest, quality: Quality) -> float | None:
+        """Return the seconds of the first frame, drawn once more: all that is kept between frames is there."""
+        with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
+            began = time.perf_counter()
+            done = self._add_idle_frame(accumulation, request)
+            return time.perf_counter() - began if done else None
 
     def _still_wanted(self, request: ThumbnailRequest) -> bool:
         return any(r is request for r in self._thumbnails)
