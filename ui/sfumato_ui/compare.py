@@ -222,7 +222,9 @@ class ComparePage(QWidget):
         """Have the other picture drawn, once the hand rests."""
         other, size = self.other_scene, self._viewport.pixel_size
         if other is not None and self._image() is None:
-            self._thumbnails.want(GROUP, {size: other}, size, quality=FULL, frames=FRAMES, first=True, timed=True)
+            self._thumbnails.want(
+                GROUP, {size: other}, size, quality=FULL, frames=FRAMES, first=True, timed=True
+            )
 
     def _on_ready(self, group: str, key: Any, image: QImage) -> None:
         other = self.other_scene
@@ -266,7 +268,9 @@ class ComparePage(QWidget):
             return
         self.layer.image, bar, mean = found
         self.layer.bars = (bar,)
-        self._tell(f"mean ΔE {mean:.1f}", "Mean CIE 1976 colour difference of the two pictures; 2 is just seen")
+        self._tell(
+            f"mean ΔE {mean:.1f}", "Mean CIE 1976 colour difference of the two pictures; 2 is just seen"
+        )
         self.layer.update()
 
 

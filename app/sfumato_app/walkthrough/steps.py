@@ -136,8 +136,31 @@ def _scroll_down(hand: Hand, page: QWidget) -> None:
     pause(100)
 
 
+# -- Compare ---------------------------------------------------------------------------------------
+def _wipe(hand: Hand) -> None:
+    """Hold the picture against the unlit one."""
+    page = hand.window.light_page
+    for section in (page.more, page.own):
+        page.ensureWidgetVisible(section.header)
+        hand.click(section.header)
+    compare = hand.window.compare
+    hand.click(hand.window.drawer.toggles["compare"])
+    hand.click(compare.wipe)
+    hand.wait_until(lambda: compare.layer.image is not None, "other picture")
+    hand.rest()
+
+
+def _rig_grid(hand: Hand) -> None:
+    compare = hand.window.compare
+    hand.click(compare.rigs)
+    cells = compare.grids["rigs"].cells.values()
+    hand.wait_until(lambda: all(not cell.image.isNull() for cell in cells), "pictures of the grid")
+    pause(100)
+
+
 # -- Material --------------------------------------------------------------------------------------
 def _material(hand: Hand) -> None:
+    hand.click(hand.window.drawer.toggles["compare"])
     hand.click(hand.window.light_page.rigs.buttons["three-point"])
     hand.choose_tab(1)
     hand.rest()
@@ -308,6 +331,8 @@ WALK: tuple[Step, ...] = (
     ("solo", "Solo: the other lamp is dark", _solo),
     ("soft", "A larger lamp: softer shadows", _soft),
     ("technique", "The technique's own section, and More", _technique),
+    ("wipe", "Compare: a wipe between the lit and the unlit picture", _wipe),
+    ("rig-grid", "Compare: the same view under each rig, with the time of a frame", _rig_grid),
     ("material", "Material: function over the histogram, presets", _material),
     ("preset", "Another preset", _preset),
     ("point", "A point of the function is dragged", _drag_point),
