@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -49,14 +49,25 @@ class Bench:
     def dense(self, scene: Scene) -> np.ndarray:
         """Return the light at each voxel (z, y, x, channels), NaN in empty blocks; all blocks must be fine."""
         _, blocks, light = self.gather(scene)
-        mean, index, levels = light.mean(), blocks.packing.index, blocks.packing.levels
-        whole = np.full((*(16 * n for n in index.shape[:3]), mean.shape[-1]), np.nan)
-        for at in np.argwhere(levels != 255):
-            x, y, z = index[tuple(at)][:3].tolist()
-            assert levels[tuple(at)] == 4
-            place = tuple(slice(16 * a, 16 * a + 16) for a in at)
-            whole[place] = mean[z : z + 16, y : y + 16, x : x + 16]
-        return whole
+        return unpacked(blocks, light.mean())
+
+    def dense_origins(self, scene: Scene) -> np.ndarray:
+        """Return where the rays of each voxel begin, in voxels (z, y, x, 3: z, y, x)."""
+        frame, blocks, _ = self.gather(scene)
+        shifts = unpacked(blocks, self.gatherer._finder.origins(frame, blocks).shifts())[..., ::-1]
+        return np.stack(np.meshgrid(*map(np.arange, shifts.shape[:3]), indexing="ij"), axis=-1) + shifts
+
+
+def unpacked(blocks: Blocks, packed: np.ndarray) -> np.ndarray:
+    """Return what texels hold at the places of their voxels; NaN in empty blocks."""
+    index, levels = blocks.packing.index, blocks.packing.levels
+    whole = np.full((*(16 * n for n in index.shape[:3]), packed.shape[-1]), np.nan)
+    for at in np.argwhere(levels != 255):
+        x, y, z = index[tuple(at)][:3].tolist()
+        assert levels[tuple(at)] == 4
+        place = tuple(slice(16 * a, 16 * a + 16) for a in at)
+        whole[place] = packed[z : z + 16, y : y + 16, x : x + 16]
+    return whole
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +109,7 @@ def test_a_single_block_is_as_in_float64(bench: Bench, emission: str) -> None:
     params = LocalOcclusionParams(directions=20, gamma=1.4, radius=7.0, emission=emission, **FINE)
     scene = Scene(volume=volume, transfer=SOFT, technique=params)
     frame, _, _ = bench.gather(scene)
-    light, at = bench.dense(scene), np.argwhere(np.ones((16, 16, 16)))
+    light, at = bench.dense(scene), bench.dense_origins(scene).reshape(-1, 3)
     expected = truth(scene, frame, at, emission == "both")
     assert light.shape[-1] == (3 if emission == "both" else 1)
     np.testing.assert_allclose(light.reshape(len(at), -1), expected[:, : light.shape[-1]], atol=2e-3)
@@ -112,10 +123,48 @@ def test_many_blocks_are_as_in_float64(bench: Bench) -> None:
     light = bench.dense(scene)[..., 0]
     known = np.argwhere(np.isfinite(light))
     known = np.random.default_rng(2).choice(known, 3000)
-    off = np.abs(light[tuple(known.T)] - truth(scene, frame, known, False)[:, 0])
-    # Values are not interpolated between blocks: samples within half a voxel of their faces differ.
-    assert off.mean() < 1e-3
-    assert off.max() < 0.03
+    origins = bench.dense_origins(scene)[tuple(known.T)]
+    off = np.abs(light[tuple(known.T)] - truth(scene, frame, origins, False)[:, 0])
+    # Rays look into the volume itself: no block's face is seen.
+    assert off.max() < 2e-3
+
+
+BALL = TransferFunction.from_points([(0.2, (1, 1, 1), 0.0), (0.8, (1, 1, 1), 0.95)], unit_distance=1.0)
+
+
+def ball(n: int, radius: float) -> tuple[Volume, np.ndarray]:
+    """Return a ball with a soft edge of 3 voxels, and the distance of voxels to its middle."""
+    z, y, x = np.mgrid[:n, :n, :n] + 0.5 - n / 2
+    away = np.sqrt(x**2 + y**2 + z**2)
+    return Volume(np.clip(0.5 - (away - radius) / 3, 0, 1).astype(np.float32)), away
+
+
+def test_rays_of_texels_next_to_a_surface_begin_on_it(bench: Bench) -> None:
+    volume, away = ball(48, 14.3)
+    scene = Scene(
+        volume=volume, transfer=BALL, technique=LocalOcclusionParams(directions=4, radius=8.0, **FINE)
+    )
+    begins = np.linalg.norm(bench.dense_origins(scene)[:48, :48, :48] + 0.5 - 24, axis=-1)
+    # An opacity of 0.2 is reached at a value of 0.326, half a voxel outside of the middle of the edge.
+    near = np.abs(away - 14.3) < 2
+    assert np.abs(begins[near] - 14.82).max() < 0.05
+    deep = away < 8
+    np.testing.assert_allclose(begins[deep], away[deep], atol=1e-6)
+
+
+def test_blocks_of_all_resolutions_agree_on_the_light_of_a_surface(bench: Bench) -> None:
+    volume, _ = ball(96, 36.0)
+    base = LocalOcclusionParams(directions=32, radius=12.0, samples=16)
+    surface = []
+    for level in (2, 3, 4):
+        scene = Scene(volume=volume, transfer=BALL, technique=replace(base, coarsest=level, reduction=1000.0))
+        frame, blocks, light = bench.gather(scene)
+        assert set(np.unique(blocks.packing.levels)) <= {level, 255}
+        moved = np.abs(bench.gatherer._finder.origins(frame, blocks).shifts()).max(axis=-1) > 0
+        surface.append(light.mean()[moved][:, 0])
+    means = [float(values.mean()) for values in surface]
+    assert max(means) - min(means) < 0.01
+    assert all(values.std() < 0.005 for values in surface)
 
 
 def solid(n: int, low: int, high: int) -> Scene:
@@ -173,7 +222,7 @@ def test_what_is_shown_is_the_exact_mean_at_each_step(bench: Bench) -> None:
         next(pieces)
         pieces.close()  # a newer scene came in between
         means.append((light.done, light.slab, light.mean()))
-    assert len(means) == 4 * light.slabs
+    assert len(means) == 5 * light.slabs  # first it is found where rays begin
     at = tuple((blocks.packing.index[1, 1, 1, :3][::-1] + 4).tolist())  # inside
     outside = tuple((blocks.packing.index[1, 1, 1, :3][::-1]).tolist())
     for done, slab, mean in means:

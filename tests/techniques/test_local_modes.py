@@ -100,6 +100,18 @@ def test_light_comes_by_and_by_and_ends_as_if_it_had_been_waited_for(
     job.release()
 
 
+@pytest.mark.parametrize("lamps", ["diffuse", "shadows"])
+def test_progress_never_goes_back(renderer: Renderer, scene: Scene, lamps: str) -> None:
+    renderer.device.store.clear()
+    job = renderer.begin(scene.with_({"technique.lamps": lamps}), SIZE)
+    shares = list(job.add_frame())
+    job.release()
+    assert len(shares) > 8
+    assert (np.diff(shares) >= 0).all()
+    assert 0 <= shares[0] < 0.1
+    assert shares[-1] == pytest.approx(1)
+
+
 def test_light_that_was_given_up_goes_on_under_another_camera(renderer: Renderer, scene: Scene) -> None:
     renderer.device.store.clear()
     whole = linear(renderer, scene)

@@ -14,9 +14,11 @@ fragment lies next to. Lamps shade surfaces, or cast the shadows of `cone`, and 
 
 Where we differ from the paper: the directions' weights are the faces' solid angles; what gives off light does so by
 its opacity, so that what is not there does not shine; the reverse index has an entry a block (`packing`), so blocks
-of all levels can show something, but are not coarser than 4^3 unless asked; a ray's first step is as long in coarse
-blocks as in fine ones, so that their borders show less; a preferred direction, a ray to the lamp alone, and lamps
-beside it are choices. Values between blocks are not interpolated where a volume is shown by its blocks alone.
+of all levels can show something, but are not coarser than 4^3 unless asked; rays begin at the surface that is nearest
+to a texel (`origins`), and look into the volume itself where it is there; their first step is as long in coarse
+blocks as in fine ones, the others lengthen by and by, so that borders of blocks do not show; a preferred direction, a
+ray to the lamp alone, and lamps beside it are choices. Values between blocks are not interpolated where a volume is
+shown by its blocks alone.
 
 Limits: nothing farther than the radius casts a shadow; light in coarse blocks is as coarse as they are.
 """

@@ -27,8 +27,8 @@ FEW = 1 << 20
 SHARE = 0.4
 #: Part of it that the volume itself may take.
 WHOLE_SHARE = 0.5
-#: Bytes of a packed texel: its value and its light.
-TEXEL_BYTES = 2 + 16
+#: Bytes of a packed texel: its value, its light, and where its rays begin.
+TEXEL_BYTES = 2 + 16 + 8
 
 
 class Blocks:

@@ -7,6 +7,7 @@ picture.
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Hashable, Iterator
 
@@ -18,7 +19,8 @@ from ..frame import Frame
 from ..marcher import Material, bind_material, material_defines
 from .blocks import Blocks, blocks_key
 from .directions import SETS, directions, nearest_count, preferred
-from .pyramid import EDGE
+from .origins import OriginFinder
+from .pyramid import EDGE, FINEST, LEVELS
 
 #: Automatic radius: this share of the longest side, but at least so many voxels.
 RADIUS, RADIUS_VOXELS = 0.06, 8.0
@@ -93,6 +95,7 @@ class Gatherer:
 
     def __init__(self, device: Device) -> None:
         self.device = device
+        self._finder = OriginFinder(device)
         self._programs = Variants(device, "techniques/local_occlusion/gather.frag.glsl")
 
     def light_map(self, frame: Frame, material: Material, blocks: Blocks) -> LightMap:
@@ -122,10 +125,14 @@ class Gatherer:
         seconds : float
             Time after which it is enough for now.
         """
-        program = self._prepare(frame, material, blocks, light)
+        origins = self._finder.origins(frame, blocks)
         target = LayerTarget(self.device, layers=1, size=light.texture.size[:2])
         began = time.perf_counter()
         try:
+            for _ in self._finder.find(frame, material, blocks, origins, target):
+                yield light.share
+            program = self._prepare(frame, material, blocks, light)
+            program.bind(u_origins=origins.texture)
             while not light.complete:
                 self._add_slab(frame, program, target, light)
                 yield light.share
@@ -161,8 +168,9 @@ class Gatherer:
         radius, offset = reach(frame)
         transfer, volume = frame.transfer, frame.volume
         program.set(
-            u_radius=radius, u_offset=offset, u_samples=float(frame.params.samples), u_gamma=frame.params.gamma,
-            u_ends=frame.params.ends, u_voxel_mm=volume.min_spacing,
+            u_radius=radius, u_offset=offset, u_samples=float(frame.params.samples),
+            u_steps=[steps(frame.params.samples, level) for level in range(LEVELS)], u_gamma=frame.params.gamma,
+            u_ends=frame.params.ends,
             u_unit_distance=transfer.unit_distance or volume.unit_distance,
         )  # fmt: skip
         return program
@@ -170,6 +178,21 @@ class Gatherer:
     def release(self) -> None:
         """Free the programs."""
         self._programs.release()
+        self._finder.release()
+
+
+@functools.cache
+def steps(samples: int, level: int) -> tuple[float, float]:
+    """Return how many steps a ray takes in blocks of a level, and the growth g that makes them as long as the ray.
+
+    The first is as long as in the finest blocks: 1 + g + g^2 + ... over the steps is `samples`.
+    """
+    number = max(2, round(samples * 2 / (1 + (1 << (FINEST - level)))))
+    low, high = 1.0, float(samples)
+    for _ in range(48):
+        growth = (low + high) / 2
+        low, high = (low, growth) if sum(growth**k for k in range(number)) > samples else (growth, high)
+    return float(number), low
 
 
 def reach(frame: Frame) -> tuple[float, float]:

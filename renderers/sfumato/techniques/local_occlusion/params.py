@@ -68,11 +68,11 @@ class LocalOcclusionParams(TechniqueParams):
         Param(
             "How lamps and light from all around are combined",
             label="Combination",
-            choices=("mix", "product"),
+            choices=("product", "mix"),
             stale="program",
             tab="light",
         ),
-    ] = "mix"
+    ] = "product"
     share: Annotated[
         float,
         Param("Share of the lamps in a mix", label="Share of lamps", ge=0, le=1, tab="light"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Generator
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
@@ -34,6 +35,8 @@ from .resolve import ResolvedLight, Resolver
 LEAST = 4
 #: Seconds of gathering before a picture that is to come soon; or as long as the drawing of the last one took.
 SECONDS = 0.1
+#: Progress of a frame when its light is gathered, resolved, and the lamps' is swept.
+GATHERED, RESOLVED, SWEPT = 0.4, 0.5, 0.7
 #: How the lamps are combined with the light from all around (``local_light.glsl``).
 PRODUCT, MIX = 1, 2
 
@@ -64,17 +67,17 @@ class LocalOcclusionPainter:
         light = self.gatherer.light_map(frame, material, blocks)
         least, seconds = (LEAST, max(SECONDS, self._drawing)) if frame.quality.progressive else (1 << 20, 0.0)
         for done in self.gatherer.gather(frame, material, blocks, light, least, seconds):
-            yield 0.4 * done
+            yield GATHERED * done
         frame.light = light.share
         began = time.perf_counter()
         resolved = self.resolver.resolved(frame, blocks, light)
         if resolved is not None:
             for done in self.resolver.resolve(frame, blocks, light, resolved):
-                yield 0.4 + 0.1 * done
+                yield GATHERED + (RESOLVED - GATHERED) * done
         program = yield from self._program(frame, material, blocks, resolved or light)
         self.marcher.begin(frame)
         for done in self.marcher.march(frame, program, (0, 1 << 24), box, True):
-            yield 0.5 + 0.5 * done
+            yield SWEPT + (1 - SWEPT) * done
         self.marcher.finish(frame)
         self._drawing = time.perf_counter() - began
         yield 1.0
@@ -93,7 +96,7 @@ class LocalOcclusionPainter:
         if params.lamps == "diffuse":
             variant = replace(variant, lights=active)
         elif params.lamps == "shadows" and active:
-            lamps = yield from self.shadows.prepare(frame, material)
+            lamps = yield from later(self.shadows.prepare(frame, material), RESOLVED, SWEPT)
             variant = replace(
                 variant, slices=True, shading=VOLUMES, lights=active, near=lamps.ways.samples, adaptive=False
             )
@@ -117,6 +120,16 @@ class LocalOcclusionPainter:
         self.gatherer.release()
         self.resolver.release()
         self.shadows.release()
+
+
+def later(work: Generator[float, None, Lamps], start: float, end: float) -> Generator[float, None, Lamps]:
+    """Do a sweep of lamps, whose progress ends at 0.5, as the part of a frame from start to end."""
+    while True:
+        try:
+            done = next(work)
+        except StopIteration as stop:
+            return cast(Lamps, stop.value)
+        yield start + (end - start) * min(2 * done, 1.0)
 
 
 def shown_emission(frame: Frame, material: Material) -> Material:
