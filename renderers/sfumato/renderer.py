@@ -9,6 +9,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
+from .audit import Audit, audited
 from .errors import SceneError
 from .gpu import Device, GpuObject, Program, ShaderSource, Target, gpu_objects
 from .scene import Scene
@@ -61,6 +62,7 @@ class Renderer:
         size: tuple[int, int],
         quality: Quality = FULL,
         part: tuple[int, int, int, int] | None = None,
+        audited: bool = False,
     ) -> Accumulation:
         """Start a picture; add frames to it until it is good enough.
 
@@ -73,6 +75,8 @@ class Renderer:
         part : (int, int, int, int), optional
             Draw only this part of the picture, at full scale: x and y of its corner from the left and the top,
             width and height, in pixels.
+        audited : bool
+            Draw beside each frame what it would be without shadows, for `Accumulation.audit`.
 
         Raises
         ------
@@ -89,9 +93,9 @@ class Renderer:
         self.device.make_current()
         if part is not None:
             corner = part[0], size[1] - part[1] - part[3]
-            return Accumulation(self, scene, (width, height), quality, corner, size)
+            return Accumulation(self, scene, (width, height), quality, corner, size, audited)
         scaled = max(1, round(width * quality.scale)), max(1, round(height * quality.scale))
-        return Accumulation(self, scene, scaled, quality)
+        return Accumulation(self, scene, scaled, quality, audited=audited)
 
     def painter(self, scene: Scene) -> Painter:
         """Return the painter of a scene's technique, making it when first asked for."""
@@ -112,15 +116,23 @@ class Renderer:
         self._add.draw()
         ctx.disable(moderngl.BLEND)
 
-    def resolve(self, total: Target, frames: int, scene: Scene) -> np.ndarray:
-        """Return a sum of frames as sRGB bytes, shape (height, width, 4), straight alpha, row 0 on top."""
+    def resolve(
+        self, total: Target, frames: int, scene: Scene, unshadowed: Target | None = None
+    ) -> np.ndarray:
+        """Return a sum of frames as sRGB bytes, shape (height, width, 4), straight alpha, row 0 on top.
+
+        With the sum of the same frames without shadows, these keep to the scene's floor.
+        """
         width, height = total.size
         texture = self.device.ctx.texture(total.size, 4)
         fbo = self.device.ctx.framebuffer([texture])
         fbo.use()
-        self._resolve.bind(u_sum=total.texture)
+        self._resolve.bind(u_sum=total.texture, u_unshadowed=(unshadowed or total).texture)
         self._resolve.set(
-            u_scale=1 / frames, u_exposure=2.0**scene.exposure, u_background=_premultiplied(scene)
+            u_floor=scene.shadow_floor if unshadowed is not None else 0.0,
+            u_scale=1 / frames,
+            u_exposure=2.0**scene.exposure,
+            u_background=_premultiplied(scene),
         )
         self._resolve.draw()
         self.device.wait()
@@ -170,6 +182,7 @@ class Accumulation:
         quality: Quality,
         corner: tuple[int, int] = (0, 0),
         whole: tuple[int, int] | None = None,
+        audited: bool = False,
     ) -> None:
         self.renderer = renderer
         self.scene = scene
@@ -180,6 +193,9 @@ class Accumulation:
         self.light = 1.0
         self._total: Target | None = None
         self._latest: Target | None = None
+        #: The sum of the same frames without shadows, where it is needed.
+        self._unshadowed: Target | None = None
+        self._measured = technique_for(scene.technique).shadows and (audited or scene.shadow_floor > 0)
 
     @property
     def settled(self) -> bool:
@@ -194,44 +210,87 @@ class Accumulation:
         GpuError
             If the device fails; frames added before stay good.
         """
-        device = self.renderer.device
-        device.make_current()
-        if self._latest is None:
-            self._latest, self._total = Target(device, self.size), Target(device, self.size)
         number = self.frames if self.settled else 0
+        share = 0.5 if self._measured else 1.0
+        self.renderer.device.make_current()
+        self._make_targets()
+        frame = yield from self._draw(number, False, 0.0, share)
+        if self._measured:
+            yield from self._draw(number, True, share, share)
+        self.renderer.device.wait()
+        self.frames, self.light = number + 1, frame.light
+
+    def _make_targets(self) -> None:
+        if self._latest is None:
+            device = self.renderer.device
+            self._latest, self._total = Target(device, self.size), Target(device, self.size)
+            self._unshadowed = Target(device, self.size) if self._measured else None
+
+    def _draw(
+        self, number: int, unshadowed: bool, start: float, share: float
+    ) -> Generator[float, None, Frame]:
+        """Draw a frame and add it to its sum, yielding progress from `start` on."""
+        device, total = self.renderer.device, self._unshadowed if unshadowed else self._total
+        assert self._latest is not None
+        assert total is not None
         frame = Frame(
-            device, self.scene, self.size, self._latest, self.quality, number, self._corner, self._whole
-        )
+            device, self.scene, self.size, self._latest, self.quality, number, self._corner, self._whole,
+            unshadowed=unshadowed,
+        )  # fmt: skip
         pieces = self.renderer.painter(self.scene).paint(frame)
         with device.store.frame():
             try:
                 for progress in pieces:
-                    yield progress
+                    yield start + share * progress
                     device.make_current()
             finally:
                 # A frame that was given up frees what it made: in its own context, whichever is current by then.
                 if device.usable:
                     device.make_current()
                 pieces.close()
-        assert self._total is not None
         if number == 0:
-            self._total.clear()
-        self.renderer.add(self._latest, self._total)
-        device.wait()
-        self.frames, self.light = number + 1, frame.light
+            total.clear()
+        self.renderer.add(self._latest, total)
+        return frame
 
     def picture(self) -> np.ndarray:
         """Return the picture so far: uint8 sRGB, straight alpha, shape (height, width, 4), row 0 on top."""
         self.renderer.device.make_current()
-        return self.renderer.resolve(self._sum(), self.frames, self.scene)
+        return self.renderer.resolve(self._sum(), self.frames, self.scene, self._unshadowed)
 
     def linear(self) -> np.ndarray:
         """Return linear light so far: float32, premultiplied, before exposure; shape (height, width, 4)."""
         self.renderer.device.make_current()
-        light = self._sum().read() / np.float32(self.frames)
+        light = self._floored()
         return np.asarray(
             light + (1 - light[..., 3:]) * np.asarray(_premultiplied(self.scene), dtype=np.float32)
         )
+
+    def audit(self, threshold: float) -> Audit:
+        """Return what the shadows darken below a share of its brightness without them, 0 to 1.
+
+        Raises
+        ------
+        SceneError
+            If the picture was not begun as an ``audited`` one, or has no frame yet.
+        """
+        self.renderer.device.make_current()
+        light = self._floored()
+        if technique_for(self.scene.technique).shadows and self._unshadowed is None:
+            raise SceneError("audited", False, "begin the picture with audited=True")
+        full = light if self._unshadowed is None else self._mean(self._unshadowed)
+        return audited(light, full, self.picture(), threshold)
+
+    def _mean(self, total: Target) -> np.ndarray:
+        return total.read() / np.float32(self.frames)
+
+    def _floored(self) -> np.ndarray:
+        """Return the mean of the frames, no darker than the scene's floor."""
+        light = self._mean(self._sum())
+        if self._unshadowed is not None and self.scene.shadow_floor > 0:
+            floor = np.float32(self.scene.shadow_floor)
+            light[..., :3] = np.maximum(light[..., :3], floor * self._mean(self._unshadowed)[..., :3])
+        return light
 
     def _sum(self) -> Target:
         if self._total is None or self.frames == 0:
@@ -241,10 +300,10 @@ class Accumulation:
     def release(self) -> None:
         """Free the GPU objects."""
         self.renderer.device.make_current()
-        for target in (self._latest, self._total):
+        for target in (self._latest, self._total, self._unshadowed):
             if target is not None:
                 target.release()
-        self._latest = self._total = None
+        self._latest = self._total = self._unshadowed = None
 
 
 def _premultiplied(scene: Scene) -> tuple[float, float, float, float]:

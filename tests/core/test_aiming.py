@@ -15,7 +15,15 @@ import sfumato
 from sfumato import Camera, Light, Scene, TransferFunction, Volume
 from sfumato.reference import cone
 from sfumato.reference.medium import Medium
-from sfumato.scene.aiming import aimed, direction_in_effect, highlight_direction, shadow_direction
+from sfumato.scene.aiming import (
+    LIT,
+    aimed,
+    direction_in_effect,
+    highlight_direction,
+    lit_place,
+    shadow_direction,
+    shadow_ends,
+)
 from sfumato.scene.picking import surface_under, transmittance_between, value_gradient
 
 N = 48
@@ -84,6 +92,28 @@ def test_points_too_near_give_no_direction(scene: Scene) -> None:
     assert shadow_direction(scene, CASTER, CASTER + 0.5) is None
 
 
+def test_what_is_seen_of_a_soft_surface_lies_before_its_half(scene: Scene) -> None:
+    """Depth d below a surface of extinction e comes to the eye by exp(-e d (1 + s)), s the light's secant."""
+    data = np.zeros((N, N, N), dtype=np.int16)
+    data[:, N // 2 :, :] = 100
+    fog = TransferFunction.from_points([(40, SKIN, 0.0), (60, SKIN, 0.5)])
+    soft = Scene(volume=Volume(data), transfer=fog, camera=replace(scene.camera, parallel_projection=True))
+    half = surface_under(soft, 0.1, 0.2, 1.0)
+    assert half is not None
+    before = 0.8 * (half[1] - N / 2)
+    for tilt in (0.0, 60.0, 80.0):
+        towards = np.array([np.sin(np.radians(tilt)), -np.cos(np.radians(tilt)), 0.0])
+        found = lit_place(soft, 0.1, 0.2, 1.0, towards)
+        assert found is not None
+        assert half[::2] == pytest.approx(found.point[::2]), "it lies on the eye's ray"
+        assert found.point[1] - N / 2 < before, "the more the light grazes it, the nearer to the front"
+        before = found.point[1] - N / 2
+        assert found.share > LIT or tilt > 60
+    away = lit_place(soft, 0.1, 0.2, 1.0, np.array([0.0, 1.0, 0.0]))
+    assert away is not None
+    assert away.share < LIT, "it turns away"
+
+
 def test_the_gradient_is_that_of_the_renderers(scene: Scene) -> None:
     volume = Volume(np.fromfunction(lambda z, y, x: 3 * z + 2 * y - x, (9, 9, 9)), spacing=(2.0, 1.0, 0.5))
     slope = value_gradient(Scene(volume=volume), np.array([[8.0, 4.0, 2.0]]))[0]
@@ -119,6 +149,12 @@ def test_a_highlight_lies_where_it_is_wanted(scene: Scene) -> None:
 # -- by `reference`: where the shadow of a small occluder truly falls ---------------------------------
 #: Side of the picture whose pixels count, and of the part around the cursor that is drawn.
 SIDE, PART = 512, 7
+#: Side of the part around the cursor in which an ideal speck's shadow is looked for.
+AROUND = 25
+#: Cosine of the angle to the sight from which on a lamp can shine: 69 degrees, and a little more.
+SLANT = 0.37
+#: Places of the picture from which pairs are drawn.
+PLACES = 1500
 #: Pairs by geometry, and how many of them are traced with and without a speck.
 PAIRS, TRACED = 20, 3
 
@@ -141,24 +177,26 @@ def seen_at(camera: Camera, point: np.ndarray) -> np.ndarray:
 def pairs(scene: Scene, rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """Yield random places of cursor and caster whose shadow nothing else hides, and the scene solved for them."""
     assert scene.volume is not None
+    assert scene.camera is not None
     voxel, far = scene.volume.min_spacing, float(np.linalg.norm(np.ptp(scene.volume.corners(), axis=0)))
+    seen = [(at, surface_under(scene, *at, 1.0)) for at in rng.uniform(-0.8, 0.8, (PLACES, 2))]
+    shown_at = [(at, np.asarray(point)) for at, point in seen if point is not None]
     while True:
-        at = rng.uniform(-0.8, 0.8, (2, 2))
-        points = [surface_under(scene, *place, 1.0) for place in at]
-        if any(point is None for point in points):
+        one, other = rng.choice(len(shown_at), 2, replace=False)
+        (_, caster), (at, place) = shown_at[one], shown_at[other]
+        way = caster - place
+        if abs(way @ np.asarray(scene.camera.basis().forward)) < SLANT * np.linalg.norm(way):
+            continue  # no lamp shines from beside the subject
+        ends = shadow_ends(scene, caster, place, (at[0], at[1]), 1.0)
+        if ends is None or not 8 * voxel < np.linalg.norm(caster - place) < far / 2:
             continue
-        caster, place = (np.asarray(point) for point in points)
-        towards = shadow_direction(scene, caster, place)
-        if towards is None or not 8 * voxel < np.linalg.norm(caster - place) < far / 2:
-            continue
-        lit, off = solve(scene, caster, place)
+        towards, shown = ends
+        lit, off = solve(scene, caster, shown.point)
         free = transmittance_between(scene, caster - 3 * voxel * towards, place + 2 * voxel * towards) > 0.98
         open_ = transmittance_between(scene, caster + 3 * voxel * towards, caster + far * towards) > 0.98
-        slope = value_gradient(scene, place[None])[0]
-        # A ray that grazes the surface goes on for long until half of it is lost.
-        steep = abs(float(slope @ towards)) > 0.25 * float(np.linalg.norm(slope))
-        if off < 0.01 and free and open_ and steep:
-            yield at[1], caster, lit
+        # Nothing falls on a surface that turns away from the light: the tool says so.
+        if off < 0.01 and free and open_ and shown.share >= LIT:
+            yield at, caster, lit
 
 
 def traced(scene: Scene, at: np.ndarray) -> np.ndarray:
@@ -189,19 +227,46 @@ def with_speck(scene: Scene, centre: np.ndarray, radius: float) -> Scene:
 
 
 def miss(scene: Scene, at: np.ndarray, caster: np.ndarray) -> float:
-    """Return how far, in pixels, the ray of light through the caster meets the surface from the cursor.
+    """Return how far, in pixels, the shadow of an ideal speck at the caster is seen from the cursor.
 
-    Light as the reference has it, from its own cone's middle; it meets the surface where half of it is lost.
+    By the reference's rays and medium: of what each pixel near the cursor sees, weighted by how much light its own
+    surface lets through, the share that lies in the shadow of a ball of one voxel's radius; the middle of those pixels
+    where it is at least half of its largest. What else stands in the light, such as the rest of what the caster is a
+    point of, does not count: it would hide the speck's shadow in its own.
     """
     assert scene.volume is not None
     assert scene.camera is not None
-    medium, voxel = Medium(scene), scene.volume.min_spacing
-    away = -cone.cones(scene, 1)[0].directions[0]
-    steps = np.arange(3 * voxel, np.linalg.norm(np.ptp(scene.volume.corners(), axis=0)), 0.1 * voxel)
-    values = medium.value(caster + steps[:, None] * away)
-    depth = np.cumsum(medium.extinction_between(values[:-1], values[1:])) * 0.1 * voxel
-    met = caster + steps[int(np.searchsorted(depth, np.log(2)))] * away
-    return float(np.linalg.norm(seen_at(scene.camera, met) - at)) * SIDE / 2
+    half, radius = AROUND / SIDE / 2, scene.volume.min_spacing
+    x, y = (at + 1) / 2
+    near = scene.camera.cropped(x - half, y - half, x + half, y + half)
+    task = cone.prepare(scene.with_(camera=near, technique="reference"), (AROUND, AROUND), 1, 1.0, 0)
+    towards = np.asarray(scene.lights[0].towards(scene.camera.basis(), scene.volume.center))
+    left, bright, dark = np.ones(AROUND**2), np.zeros(AROUND**2), np.zeros(AROUND**2)
+    start, slope = task.rays.start, task.rays.slope
+    for i in range(task.stack.n):
+        ends = np.maximum(task.stack.plane(i), task.z_in), np.minimum(task.stack.plane(i + 1), task.z_out)
+        hit = np.flatnonzero((ends[1] > ends[0]) & (left > 1e-3))
+        a, b = (start[hit] + slope[hit] * z[hit, None] for z in ends)
+        depth = task.medium.between(task.medium.value(a), task.medium.value(b))[0]
+        depth = depth * np.linalg.norm(b - a, axis=-1)
+        middle = 0.5 * (a + b)
+        seen = left[hit] * -np.expm1(-depth) * np.exp(-skin(task.medium, middle, towards, radius))
+        way = middle - caster
+        along = way @ towards
+        beside = np.linalg.norm(way - np.outer(along, towards), axis=-1)
+        bright[hit] += seen
+        dark[hit] += seen * ((beside < radius) & (along < 0))
+        left[hit] *= np.exp(-depth)
+    share = (dark / np.where(bright > 0, bright, 1)).reshape(AROUND, AROUND)
+    rows, columns = np.nonzero(share >= 0.5 * max(share.max(), 0.05))
+    return float(np.hypot(rows.mean() - (AROUND - 1) / 2, columns.mean() - (AROUND - 1) / 2))
+
+
+def skin(medium: Medium, points: np.ndarray, towards: np.ndarray, voxel: float) -> np.ndarray:
+    """Return the optical depth of four voxels towards the light."""
+    steps = np.arange(0, 4.01, 0.25) * voxel
+    values = medium.value(points[:, None] + steps[:, None] * towards)
+    return np.asarray(medium.extinction_between(values[:, :-1], values[:, 1:]).sum(axis=1) * 0.25 * voxel)
 
 
 def darkening(scene: Scene, at: np.ndarray, caster: np.ndarray) -> float:
@@ -225,12 +290,15 @@ def darkening(scene: Scene, at: np.ndarray, caster: np.ndarray) -> float:
 )
 def test_twenty_shadows_lie_under_the_cursor(name: str, stride: int, data_dir: Path) -> None:
     volume = sfumato.load(name if name.startswith("sample:") else data_dir / name)
-    scene = Scene(volume=coarse(volume, stride), step=1.0, lights=(Light(aperture=1.0),))
-    found, dark = [], []
-    for at, caster, lit in islice(pairs(scene, np.random.default_rng(8)), PAIRS):
-        found.append(miss(lit, at, caster))
-        if len(dark) < TRACED:
-            dark.append(darkening(lit, at, caster))
+    scene = Scene(volume=volume, step=1.0, lights=(Light(aperture=1.0),))
+    found = [
+        miss(lit, at, caster) for at, caster, lit in islice(pairs(scene, np.random.default_rng(8)), PAIRS)
+    ]
+    small = scene.with_(volume=coarse(volume, stride))
+    dark = [
+        darkening(lit, at, caster)
+        for at, caster, lit in islice(pairs(small, np.random.default_rng(8)), TRACED)
+    ]
     print(
         f"{name}: median {np.median(found):.2f} px, largest {max(found):.2f} px, least dark {min(dark):.0%}"
     )

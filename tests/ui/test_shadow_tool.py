@@ -11,7 +11,7 @@ from qtpy.QtCore import QPoint, Qt
 from qtpy.QtWidgets import QApplication
 
 from sfumato import Light, Scene
-from sfumato.scene.aiming import direction_in_effect, highlight_direction
+from sfumato.scene.aiming import direction_in_effect, highlight_direction, shadow_ends
 from sfumato.scene.picking import surface_under
 from sfumato_ui.window import MainWindow
 
@@ -59,11 +59,22 @@ def towards(window: MainWindow, place: np.ndarray) -> np.ndarray:
     return direction_in_effect(scene, scene.lights[window.editor.selected], place)
 
 
+def wanted(window: MainWindow, caster: QPoint, place: QPoint) -> np.ndarray:
+    """Return the direction by which the surface at one place shadows what is seen at another."""
+    view, p, q = window.viewport.view, surface(window, caster), surface(window, place)
+    assert view is not None
+    at = view.fractions((place.x(), place.y()))
+    found = shadow_ends(window.editor.scene, p, q, at, window.viewport.aspect)
+    assert found is not None
+    assert float(found[0] @ (p - q)) > 0.995 * float(np.linalg.norm(p - q)), "nearly the surfaces' own"
+    return found[0]
+
+
 def test_the_shadow_follows_the_pointer_in_one_step(shown: MainWindow, user: Any) -> None:
     start, (caster, place) = shown.editor.scene, ends(shown)
-    p, q = surface(shown, caster), surface(shown, place)
+    way, q = wanted(shown, caster, place), surface(shown, place)
     user.drag(shown.viewport, caster, place)
-    np.testing.assert_allclose(towards(shown, q), (p - q) / np.linalg.norm(p - q), atol=1e-6)
+    np.testing.assert_allclose(towards(shown, q), way, atol=1e-6)
     assert shown.editor.scene.camera == start.camera
     assert shown.editor.scene.lights[1] == start.lights[1]
     assert shown.editor.document.undo_label == "Place the shadow"
@@ -78,14 +89,13 @@ def test_its_ends_are_handles_until_the_lamp_is_moved_otherwise(shown: MainWindo
     assert view is not None
     assert [h.key for h in tool.handles(view)] == ["place", "caster"]
     other = place + QPoint(30, -50)
-    p, q = surface(shown, caster), surface(shown, other)
     user.drag(shown.viewport, place, other)
-    np.testing.assert_allclose(towards(shown, q), (p - q) / np.linalg.norm(p - q), atol=1e-6)
+    np.testing.assert_allclose(towards(shown, surface(shown, other)), wanted(shown, caster, other), atol=1e-6)
     before = shown.editor.scene.lights[0]
     user.press(Qt.Key.Key_Right)
     assert shown.editor.scene.lights[0] != before
-    q = surface(shown, QPoint(round(other.x() + 0.01 * view.height), other.y()))
-    np.testing.assert_allclose(towards(shown, q), (p - q) / np.linalg.norm(p - q), atol=0.02)
+    moved = QPoint(round(other.x() + 0.01 * view.height), other.y())
+    np.testing.assert_allclose(towards(shown, surface(shown, moved)), wanted(shown, caster, moved), atol=0.02)
     shown.editor.change_light("Move the light", tilt=10.0)
     assert tool.handles(view) == []
 

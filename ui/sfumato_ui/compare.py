@@ -252,7 +252,12 @@ class ComparePage(QWidget):
         if self.mode == "difference":
             layer.names, layer.image = ("", f"Difference from: {name}"), None
             shown = self._present
-            still = shown is not None and not shown.interactive and shown.scene == self._editor.scene
+            still = (
+                shown is not None
+                and not shown.interactive
+                and shown.audit is None
+                and shown.scene == self._editor.scene
+            )
             if image is not None and shown is not None and still:
                 self._differences.start(shown.image, image)
         elif image is not None:

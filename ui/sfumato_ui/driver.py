@@ -26,6 +26,7 @@ class ViewDriver(QObject):
         super().__init__(viewport)
         self._editor, self._viewport, self._worker = editor, viewport, worker
         self._unlit = False
+        self._audit = 0.0
         self._frames = chosen_quality().frames
         self._still = QTimer(self)
         self._still.setSingleShot(True)
@@ -43,6 +44,12 @@ class ViewDriver(QObject):
         """Show the picture without light, or with it again."""
         if unlit != self._unlit:
             self._unlit = unlit
+            self.ask()
+
+    def set_audit(self, threshold: float) -> None:
+        """Show the shadow audit with a threshold (0 to 1), or end it (0)."""
+        if threshold != self._audit:
+            self._audit = threshold
             self.ask()
 
     def set_frames(self, frames: int) -> None:
@@ -70,7 +77,8 @@ class ViewDriver(QObject):
     def _request(self, interactive: bool) -> None:
         if is_drawable(self.shown_scene) and self._viewport.isVisible():
             size = self._viewport.pixel_size
-            self._worker.show(ViewRequest(self.shown_scene, size, interactive, self._frames))
+            audit = 0.0 if self._unlit else self._audit
+            self._worker.show(ViewRequest(self.shown_scene, size, interactive, self._frames, audit))
 
     def _on_picture(self, picture: Picture) -> None:
         """Show a picture, unless it is of data that are no longer open."""

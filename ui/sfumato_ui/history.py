@@ -147,7 +147,7 @@ class HistoryRow(QListWidget):
     def _take(self, picture: Picture) -> None:
         """Keep a small copy, if the picture is the present state's and better than what is there."""
         scene = picture.scene
-        if scene is not self._editor.scene or self._editor.document.dragging:
+        if scene is not self._editor.scene or self._editor.document.dragging or picture.audit is not None:
             return
         if self.pictures.of(scene) is not None and not picture.settled:
             return

@@ -10,6 +10,7 @@ import numpy as np
 from qtpy.QtGui import QImage
 
 from sfumato import Scene
+from sfumato.audit import Audit
 from sfumato.export.tiles import Guest
 from sfumato.techniques.frame import Quality
 
@@ -33,6 +34,8 @@ class Picture:
     wanted: int = STILL_FRAMES
     #: How much of the light that comes by and by it shows, 0 to 1.
     light: float = 1.0
+    #: What the shadow audit found, if it shows one.
+    audit: Audit | None = None
 
     @property
     def settled(self) -> bool:
@@ -48,6 +51,8 @@ class ViewRequest:
     size: tuple[int, int]
     interactive: bool
     frames: int = STILL_FRAMES
+    #: Threshold of the shadow audit, 0 to 1; 0: none.
+    audit: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -94,7 +99,12 @@ def image_of(accumulation: Any) -> QImage:
 
     The conversion, which also copies, is done here: the window's thread has nothing left to do but to paint.
     """
-    pixels = np.ascontiguousarray(accumulation.picture())
+    return image_from(accumulation.picture())
+
+
+def image_from(picture: np.ndarray) -> QImage:
+    """Return a picture, shape (height, width, 4), as the image that paints quickest."""
+    pixels = np.ascontiguousarray(picture)
     height, width = pixels.shape[:2]
     image = QImage(pixels.data, width, height, 4 * width, QImage.Format.Format_RGBA8888)
     return image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)

@@ -8,10 +8,7 @@ from sfumato.techniques import technique_for
 
 def no_floor(scene: Scene) -> str:
     """Return why a floor has no effect on a scene, or nothing."""
-    casts = getattr(scene.technique, "lamps", "shadows") == "shadows"
-    if technique_for(scene.technique).floor and casts:
-        return ""
-    return "Here are no shadows of lamps to lift."
+    return "" if technique_for(scene.technique).shadows else "This technique casts no shadows to lift."
 
 
 def badge_of(scene: Scene) -> str:

@@ -36,6 +36,7 @@ from .dial import MOVE
 from .editing import Editor
 from .jobs import Picture
 from .settings import settings
+from .shadow_audit import words_of
 from .shadow_floor import badge_of
 from .subject import is_open, size_of
 from .theme import DARK, PICTURE_GREY
@@ -202,12 +203,8 @@ class Viewport(QWidget):
             overlay.draw_letters(
                 painter, self.rect(), camera_moves.edge_letters(scene.camera) if known else None
             )
-        if self._picture is not None and scene.geometry:
-            overlay.draw_color_bars(painter, self.rect(), color_bars(scene))
         if self._picture is not None:
-            badge = badge_of(self._picture.scene)
-            if badge:
-                overlay.draw_badge(painter, self.rect(), badge)
+            self._paint_legend(painter, self._picture)
         if self.scale_bar and self._picture is not None and scene.camera is not None:
             lift = self.fontMetrics().height() + 22 if self.hint else 0
             overlay.draw_scale_bar(painter, self.rect(), scene.camera, lift)
@@ -218,6 +215,17 @@ class Viewport(QWidget):
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.setPen(QPen(QColor(DARK.accent), 2))
             painter.drawRect(self.rect().adjusted(1, 1, -1, -1))
+
+    def _paint_legend(self, painter: QPainter, picture: Picture) -> None:
+        """Paint colour bars, and what must be said of the shadows."""
+        bars, said = color_bars(picture.scene), [badge_of(picture.scene)]
+        if picture.audit is not None:
+            bars += (picture.audit.bar,) if picture.audit.share > 0 else ()
+            said.insert(0, words_of(picture.audit, picture.scene))
+        overlay.draw_color_bars(painter, self.rect(), bars)
+        badge = "  ·  ".join(filter(None, said))
+        if badge:
+            overlay.draw_badge(painter, self.rect(), badge)
 
     def _paint_tool(self, painter: QPainter) -> None:
         """Paint the tool's handles; while the lamp moves with another tool, its guide alone."""

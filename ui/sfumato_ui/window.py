@@ -152,6 +152,7 @@ class MainWindow(QMainWindow):
         self.top.save.clicked.connect(lambda: self.files.save_scene())
         self.top.picture.clicked.connect(self.exporter.ask)
         self.top.unlit.connect(self.driver.set_unlit)
+        self.light_page.audit.wanted.connect(self.driver.set_audit)
         self.strip.chosen.connect(self._choose_tool)
         self.strip.fit.clicked.connect(lambda: self.look(""))
         self.strip.vtk.toggled.connect(self.vtk.set_open)

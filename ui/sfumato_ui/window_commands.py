@@ -32,6 +32,7 @@ def window_commands(window: MainWindow) -> Commands:
         "history": lambda: window.drawer.toggle("history"),
         "compare": lambda: window.drawer.toggle("compare"),
         "vtk": window.strip.vtk.toggle,
+        "audit": window.light_page.audit.on.toggle,
         "theme": lambda: window.set_theme(_other_theme()),
         "fit": lambda: window.look(""),
         **{f"tool-{name}": partial(window.strip.choose, name) for name in window.strip.tools},
@@ -61,6 +62,7 @@ def _possible(window: MainWindow) -> dict[str, Callable[[], bool]]:
         **dict.fromkeys(needing, opened),
         **{f"rig-{n}": partial(_can_be_clicked, window, n) for n in rigs()},
         **{f"technique-{n}": volume for n in techniques()},
+        "audit": opened,
         "undo": lambda: bool(window.editor.document.undo_label),
         "redo": lambda: bool(window.editor.document.redo_label),
     }

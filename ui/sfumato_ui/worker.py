@@ -26,6 +26,7 @@ from .jobs import (
     ThumbnailRequest,
     ViewRequest,
     affordable_frames,
+    image_from,
     image_of,
 )
 from .settings import gpu_budget
@@ -206,7 +207,8 @@ class RenderWorker(QObject):
     def _draw(self, renderer: Any, request: ViewRequest) -> None:
         quality = DRAG_LADDER[self._rung] if request.interactive else STILL
         quality = replace(quality, scale=quality.scale * self._scale)
-        with _accumulation(renderer, request.scene, request.size, quality) as accumulation:
+        audited = request.audit > 0
+        with _accumulation(renderer, request.scene, request.size, quality, audited) as accumulation:
             most = count = 1 if request.interactive else request.frames
             index, began = 0, time.perf_counter()
             while index < count:
@@ -346,8 +348,10 @@ class _ViewsFirst:
 
 
 @contextmanager
-def _accumulation(renderer: Any, scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Any]:
-    accumulation = renderer.begin(scene, size, quality=quality)
+def _accumulation(
+    renderer: Any, scene: Scene, size: tuple[int, int], quality: Quality, audited: bool = False
+) -> Iterator[Any]:
+    accumulation = renderer.begin(scene, size, quality=quality, audited=audited)
     lost = False
     try:
         yield accumulation
@@ -361,7 +365,8 @@ def _accumulation(renderer: Any, scene: Scene, size: tuple[int, int], quality: Q
 
 
 def _picture(accumulation: Any, request: ViewRequest, seconds: float, wanted: int) -> Picture:
-    shown = image_of(accumulation)
+    audit = accumulation.audit(request.audit) if request.audit else None
+    shown = image_of(accumulation) if audit is None else image_from(audit.picture)
     return Picture(
         shown,
         request.scene,
@@ -371,4 +376,5 @@ def _picture(accumulation: Any, request: ViewRequest, seconds: float, wanted: in
         request.interactive,
         wanted,
         accumulation.light,
+        audit,
     )

@@ -136,10 +136,17 @@ def _scroll_down(hand: Hand, page: QWidget) -> None:
     pause(100)
 
 
+def _audit(hand: Hand) -> None:
+    audit = hand.window.light_page.audit
+    hand.click(audit.on, QPoint(10, audit.on.height() // 2))
+    hand.rest()
+
+
 # -- Compare ---------------------------------------------------------------------------------------
 def _wipe(hand: Hand) -> None:
     """Hold the picture against the unlit one."""
     page = hand.window.light_page
+    hand.click(page.audit.on, QPoint(10, page.audit.on.height() // 2))
     for section in (page.more, page.own):
         page.ensureWidgetVisible(section.header)
         hand.click(section.header)
@@ -331,6 +338,7 @@ WALK: tuple[Step, ...] = (
     ("solo", "Solo: the other lamp is dark", _solo),
     ("soft", "A larger lamp: softer shadows", _soft),
     ("technique", "The technique's own section, and More", _technique),
+    ("audit", "Shadow audit: what shadows darken below a quarter of its light", _audit),
     ("wipe", "Compare: a wipe between the lit and the unlit picture", _wipe),
     ("rig-grid", "Compare: the same view under each rig, with the time of a frame", _rig_grid),
     ("material", "Material: function over the histogram, presets", _material),

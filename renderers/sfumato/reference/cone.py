@@ -68,7 +68,6 @@ class Task:
     stack: Stack
     cones: tuple[Cone, ...]
     ambient: float
-    floor: float
     light_step: float
 
 
@@ -87,7 +86,12 @@ def cones(scene: Scene, count: int) -> tuple[Cone, ...]:
 
 
 def prepare(
-    scene: Scene, size: tuple[int, int], directions: int, light_step: float, frame_index: int
+    scene: Scene,
+    size: tuple[int, int],
+    directions: int,
+    light_step: float,
+    frame_index: int,
+    unshadowed: bool = False,
 ) -> Task:
     """Collect what the integral over a picture needs.
 
@@ -109,8 +113,7 @@ def prepare(
         z_out,
         Stack.of(scene, jitter(frame_index)),
         cones(scene, directions),
-        float(getattr(scene.technique, "ambient", 0.0)),
-        scene.shadow_floor,
+        1.0 if unshadowed else float(getattr(scene.technique, "ambient", 0.0)),
         light_step * scene.volume.min_spacing,
     )
 
@@ -123,6 +126,7 @@ def passes(
     light_step: float = 0.5,
     frame_index: int = 0,
     compiled: bool | None = None,
+    unshadowed: bool = False,
 ) -> Iterator[float]:
     """Draw into an array some rows at a time, yielding progress (0 to 1) after each; close it to cancel.
 
@@ -132,13 +136,15 @@ def passes(
         Filled from the top.
     compiled : bool, optional
         Whether to use Numba; by default wherever it can be imported.
+    unshadowed : bool
+        Whether all light arrives, whatever is in its way.
 
     Raises
     ------
     ImportError
         If Numba is asked for and missing.
     """
-    task = prepare(scene, size, directions, light_step, frame_index)
+    task = prepare(scene, size, directions, light_step, frame_index, unshadowed)
     loops = _compiled() if compiled is None else (_compiled(required=True) if compiled else None)
     if loops:
         loops.empty_distance(task.medium)  # once, before the threads ask for it
@@ -228,12 +234,10 @@ def _integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
 def _lit(task: Task, cone: Cone, p_world: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return the mean over a cone's directions of transmittance times slab term."""
     form = rear_term if cone.rear else front_term
-    total, unshadowed = np.zeros(len(x)), np.zeros(len(x))
+    total = np.zeros(len(x))
     for towards, s in zip(cone.directions, cone.secants, strict=True):
-        term = form(x, v, s)
-        total += np.exp(-optical_depth(task, p_world, towards)) * term
-        unshadowed += term
-    return np.maximum(total, task.floor * unshadowed) / len(cone.directions)
+        total += np.exp(-optical_depth(task, p_world, towards)) * form(x, v, s)
+    return total / len(cone.directions)
 
 
 def optical_depth(task: Task, p_world: np.ndarray, towards: np.ndarray) -> np.ndarray:

@@ -41,7 +41,6 @@ def integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
             rear,
             np.array([cone.facing for cone in task.cones]),
             task.ambient,
-            task.floor,
             task.light_step,
             medium.voxels,
             np.ascontiguousarray(medium.index_from_world[:3]),
@@ -175,7 +174,6 @@ def _pixels(  # type: ignore[no-untyped-def]
     rear,
     facing,
     ambient,
-    floor,
     step,
     voxels,
     matrix,
@@ -207,7 +205,10 @@ def _pixels(  # type: ignore[no-untyped-def]
             light[:] = 0.0
             for lamp in range(directions.shape[0]):
                 at = pb if rear[lamp] else pa
-                total = unshadowed = 0.0
+                if ambient >= 1:
+                    light += radiance[lamp] * facing[lamp] * alpha
+                    continue
+                total = 0.0
                 for k in range(directions.shape[1]):
                     w = directions[lamp, k]
                     depth = _optical_depth(
@@ -225,11 +226,8 @@ def _pixels(  # type: ignore[no-untyped-def]
                         w[1],
                         w[2],
                     )
-                    term = _slab_term(x, v, secants[lamp, k], rear[lamp])
-                    unshadowed += term
                     if depth < DARK:
-                        total += math.exp(-depth) * term
-                total = max(total, floor * unshadowed)
+                        total += math.exp(-depth) * _slab_term(x, v, secants[lamp, k], rear[lamp])
                 light += radiance[lamp] * (
                     (1 - ambient) * total / directions.shape[1] + ambient * facing[lamp] * alpha
                 )

@@ -15,6 +15,8 @@ from .volume import Volume
 STEP_VOXELS = 0.5
 #: Transmittance below which a ray has met a surface: half of what lies behind is hidden.
 HALF_HIDDEN = 0.5
+#: How far towards a light what a surface takes of it is counted as the surface's own.
+SKIN_VOXELS = 4.0
 
 
 def surface_under(scene: Scene, x: float, y: float, aspect: float) -> Vec3 | None:
@@ -32,27 +34,65 @@ def surface_under(scene: Scene, x: float, y: float, aspect: float) -> Vec3 | Non
     (float, float, float) or None
         World mm; None where the ray meets too little, or there is no volume.
     """
-    volume, camera = scene.volume, scene.camera
-    if volume is None or camera is None or scene.transfer is None:
+    points, before, taken = ray_samples(scene, x, y, aspect)
+    wanted = -np.log(HALF_HIDDEN)
+    hit = int(np.searchsorted(before + taken, wanted))
+    if hit == len(points):
         return None
+    # Samples stand in the middle of their steps.
+    along = points[1] - points[0] if len(points) > 1 else np.zeros(3)
+    place = points[hit] + along * ((wanted - before[hit]) / taken[hit] - 0.5)
+    return float(place[0]), float(place[1]), float(place[2])
+
+
+def ray_samples(scene: Scene, x: float, y: float, aspect: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return samples on the ray through a place of the picture (as in `surface_under`), from the eye on.
+
+    Returns
+    -------
+    points : ndarray, shape (n, 3)
+        World mm; none where the ray meets nothing.
+    before, taken : ndarray, shape (n,)
+        Optical depth from the eye to each sample, and of the step around it.
+    """
+    volume, camera = scene.volume, scene.camera
+    nothing = np.zeros((0, 3)), np.zeros(0), np.zeros(0)
+    if volume is None or camera is None or scene.transfer is None:
+        return nothing
     start, along = ray_through(camera, x, y, aspect)
     near, far = _shown_interval(scene, volume, start, along)
     if not camera.parallel_projection:
         near = max(near, 0.0)
     if not near < far:
-        return None
+        return nothing
     step = min(STEP_VOXELS * volume.min_spacing, far - near)
     count = max(1, round((far - near) / step))
     step = (far - near) / count
     points = start + along * (near + step * (np.arange(count) + 0.5))[:, None]
-    depth = np.cumsum(_extinction_at(scene, volume, points)) * step
-    wanted = -np.log(HALF_HIDDEN)
-    hit = int(np.searchsorted(depth, wanted))
-    if hit == count:
-        return None
-    before = depth[hit - 1] if hit else 0.0
-    place = start + along * (near + step * (hit + (wanted - before) / (depth[hit] - before)))
-    return float(place[0]), float(place[1]), float(place[2])
+    taken = _extinction_at(scene, volume, points) * step
+    return points, np.cumsum(taken) - taken, taken
+
+
+def light_depths(scene: Scene, points: np.ndarray, towards: np.ndarray) -> np.ndarray:
+    """Return the optical depth from each of some points (n, 3) towards a light, over the way that a skin is thick.
+
+    What is farther away than `SKIN_VOXELS` is not asked: that casts a shadow, which is another question.
+    """
+    volume = scene.volume
+    assert volume is not None
+    step = STEP_VOXELS * volume.min_spacing
+    ways = step * (np.arange(round(SKIN_VOXELS / STEP_VOXELS)) + 0.5)
+    along = (points[:, None] + ways[:, None] * np.asarray(towards)).reshape(-1, 3)
+    extinction = np.where(_is_shown(scene, volume, along), _extinction_at(scene, volume, along), 0)
+    return np.asarray(extinction.reshape(len(points), -1).sum(axis=1) * step)
+
+
+def _is_shown(scene: Scene, volume: Volume, points: np.ndarray) -> np.ndarray:
+    """Tell of world points (n, 3) whether they are inside crop box and clip planes."""
+    shown = np.ones(len(points), dtype=bool)
+    for normal, least in _half_spaces(scene, volume):
+        shown &= points @ normal >= least
+    return shown
 
 
 def ray_through(camera: Camera, x: float, y: float, aspect: float) -> tuple[np.ndarray, np.ndarray]:
@@ -71,17 +111,10 @@ def ray_through(camera: Camera, x: float, y: float, aspect: float) -> tuple[np.n
 def _shown_interval(
     scene: Scene, volume: Volume, start: np.ndarray, along: np.ndarray
 ) -> tuple[float, float]:
-    """Return the distances between which the ray is inside crop box and clip planes: n . p >= c for each."""
-    matrix = volume.texture_from_world
-    spaces = [(matrix[i, :3], scene.crop.low[i] - matrix[i, 3]) for i in range(3)]
-    spaces += [(-matrix[i, :3], matrix[i, 3] - scene.crop.high[i]) for i in range(3)]
-    for plane in scene.clip:
-        if plane.enabled:
-            normal = np.asarray(plane.normal, dtype=float)
-            spaces.append((normal, float(normal @ np.asarray(plane.point))))
+    """Return the distances between which the ray is inside crop box and clip planes."""
     near, far = -np.inf, np.inf
-    for normal, offset in spaces:
-        rate, room = float(normal @ along), float(normal @ start) - offset
+    for normal, least in _half_spaces(scene, volume):
+        rate, room = float(normal @ along), float(normal @ start) - least
         if abs(rate) < 1e-12 * float(np.linalg.norm(normal)):
             if room < 0:
                 return 0.0, 0.0
@@ -90,6 +123,18 @@ def _shown_interval(
         else:
             far = min(far, -room / rate)
     return near, far
+
+
+def _half_spaces(scene: Scene, volume: Volume) -> list[tuple[np.ndarray, float]]:
+    """Return what is shown as half spaces of world points p, n . p >= c for each pair of n and c."""
+    matrix = volume.texture_from_world
+    spaces = [(matrix[i, :3], scene.crop.low[i] - matrix[i, 3]) for i in range(3)]
+    spaces += [(-matrix[i, :3], matrix[i, 3] - scene.crop.high[i]) for i in range(3)]
+    for plane in scene.clip:
+        if plane.enabled:
+            normal = np.asarray(plane.normal, dtype=float)
+            spaces.append((normal, float(normal @ np.asarray(plane.point))))
+    return spaces
 
 
 def _extinction_at(scene: Scene, volume: Volume, points: np.ndarray) -> np.ndarray:
@@ -154,4 +199,11 @@ def _trilinear(data: np.ndarray, index: np.ndarray) -> np.ndarray:
     return total
 
 
-__all__ = ["ray_through", "surface_under", "transmittance_between", "value_gradient"]
+__all__ = [
+    "light_depths",
+    "ray_samples",
+    "ray_through",
+    "surface_under",
+    "transmittance_between",
+    "value_gradient",
+]

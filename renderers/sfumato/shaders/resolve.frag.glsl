@@ -1,6 +1,8 @@
 // From accumulated light to the picture: mean of the frames, exposure, tone map (clip), sRGB, straight alpha, row 0 on top.
 
 uniform sampler2D u_sum;
+uniform sampler2D u_unshadowed;  // the same frames without shadows
+uniform float u_floor;       // least share of that
 uniform float u_scale;       // 1 / frames
 uniform float u_exposure;    // factor
 uniform vec4 u_background;   // linear, premultiplied
@@ -15,6 +17,7 @@ void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     at.y = textureSize(u_sum, 0).y - 1 - at.y;
     vec4 light = texelFetch(u_sum, at, 0) * u_scale;
+    if (u_floor > 0.0) light.rgb = max(light.rgb, u_floor * u_scale * texelFetch(u_unshadowed, at, 0).rgb);
     light += (1.0 - light.a) * u_background;
     vec3 straight = light.a > 0.0 ? light.rgb / light.a : vec3(0.0);
     o_color = vec4(srgb(clamp(straight * u_exposure, 0.0, 1.0)), light.a);

@@ -47,7 +47,9 @@ class Frame:
     ``pixel_jitter`` the offset of the rays in pixels, each in [-0.5, 0.5]. A frame may be a part of a ``whole``
     larger picture: then ``corner`` is its lower left pixel, counted from the whole's lower left. A painter tells
     by ``light`` how much (0 to 1) of the light that comes by and by is there; before it is ``settled``, the next
-    frame takes this one's place.
+    frame takes this one's place. An ``unshadowed`` frame shows every sample in all the light that would reach it if
+    nothing were in the way, and only then an opaque surface in front of a lamp of intensity 1 has its own colour: it
+    is what shadows are measured by.
     """
 
     device: Device
@@ -59,6 +61,7 @@ class Frame:
     corner: tuple[int, int] = (0, 0)
     whole: tuple[int, int] | None = None
     light: float = 1.0
+    unshadowed: bool = False
 
     @property
     def settled(self) -> bool:

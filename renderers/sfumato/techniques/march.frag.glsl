@@ -28,7 +28,7 @@ uniform int u_first, u_last;     // segments of this pass
 uniform float u_near;            // mm
 uniform float u_far;             // mm
 uniform float u_ambient, u_diffuse, u_specular, u_shininess;
-uniform float u_shadow_floor;    // least visibility of a lamp
+uniform float u_unshadowed;      // 1: all light arrives, nothing is in its way
 
 #if SHADING == 1 || SHADING == 3
 // Where a view ray meets a plane of the stack, and the value there.
@@ -95,9 +95,9 @@ vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float dept
     float visible[4];
     visibilities(i, front, back, visible);
     for (int l = 0; l < LIGHTS; ++l) {
-        visible[l] = max(visible[l], u_shadow_floor);
+        visible[l] = max(visible[l], u_unshadowed);
         // Ambient is what no shadow takes away, not even a sample's own; a fully lit surface stays as bright as it is.
-        result += u_light_color[l] * color * mix(visible[l] * returned[l], alpha, u_ambient);
+        result += u_light_color[l] * color * mix(visible[l] * returned[l], alpha, max(u_ambient, u_unshadowed));
 #if SPECULAR
         if (strength > 0.0 && dot(gradient, u_towards[l]) > 0.0) {
             float shine = pow(max(dot(gradient / strength, normalize(u_towards[l] + view)), 0.0), u_shininess);

@@ -269,7 +269,7 @@ def set_view(program: Program, frame: Frame, stack: Stack | None) -> None:
         u_step=frame.step, u_z0=stack.z0 if stack else frame.jitter - 1,
         u_near=near_depth(frame), u_far=_FAR,
         u_edge=EDGE / frame.volume.min_spacing,
-        u_shadow_floor=frame.scene.shadow_floor,
+        u_unshadowed=float(frame.unshadowed),
     )  # fmt: skip
 
 

@@ -56,8 +56,8 @@ class Technique:
         Whether its parameter ``ambient`` is a share of each lamp, instead of a light of its own.
     around : bool
         Whether it has light from all around, whose share depends on whether there are lamps.
-    floor : bool
-        Whether its shadows keep to the scene's ``shadow_floor``; those without lamps' shadows have none.
+    shadows : bool
+        Whether something can be in the way of light; those keep to the scene's ``shadow_floor``.
     geometry : bool
         Whether it draws the scene's geometry.
     options : dict
@@ -76,7 +76,7 @@ class Technique:
     kinds: tuple[str, ...] = ("directional",)
     ambient_of_lamps: bool = False
     around: bool = False
-    floor: bool = True
+    shadows: bool = True
     geometry: bool = False
     options: dict[str, Any] = field(default_factory=dict, compare=False)
 

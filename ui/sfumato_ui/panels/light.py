@@ -19,6 +19,7 @@ from ..lamp_tools import LampTools
 from ..lamps import LampRow
 from ..rigs_row import RigButton, RigsRow
 from ..section import Section
+from ..shadow_audit import ShadowAudit
 from ..shadow_floor import no_floor
 from ..sliders import LabelledSlider
 from ..thumbnails import Thumbnails
@@ -54,6 +55,7 @@ class LightPage(Page):
         self.attached = self._attached_menu()
         self.floor = slider_for(fields_of(Scene)["shadow_floor"])
         bind_slider(self.floor, editor, "shadow_floor", "the shadow floor")
+        self.audit = ShadowAudit()
         # All that a first look needs fits into a window of 1280 x 720.
         self.column.setSpacing(4)
         self.controls: list[ParamControl] = []
@@ -270,6 +272,7 @@ class LightPage(Page):
         self.attached.setParent(self)
         self.lamp_more.setParent(self)
         self.floor.setParent(self)
+        self.audit.setParent(self)
         self.more_rigs.setParent(self)
         self.own.clear()
         self.more.clear()
@@ -283,6 +286,7 @@ class LightPage(Page):
         for control in rest:
             self.more.add(control)
         self.more.add(self.floor)
+        self.more.add(self.audit)
         self.controls = essential + rest
         self.rebuilt.emit()
 

@@ -14,7 +14,7 @@ from qtpy.QtCore import QObject, Qt, Signal
 from qtpy.QtGui import QPainter
 
 from sfumato import Light, Scene, Volume
-from sfumato.scene.aiming import Aimed, aimed, highlight_direction, shadow_direction
+from sfumato.scene.aiming import LIT, Aimed, LitPlace, aimed, highlight_direction, shadow_ends
 from sfumato.scene.picking import surface_under
 
 from ..editing import Editor
@@ -26,6 +26,7 @@ SHADOW, HIGHLIGHT = "Place the shadow", "Place the highlight"
 STEP, LARGE_STEP = 0.01, 0.05
 #: Angle in degrees that counts as having reached what was wanted.
 CLOSE = 0.5
+TURNED_AWAY = "The surface here turns away from that light, and is dark by itself"
 
 
 @dataclass
@@ -118,7 +119,7 @@ class ShadowTool(HandleTool):
             self._placed.caster = surface
         else:
             self._placed.place = surface
-        self._solve(self._placed)
+        self._solve(self._placed, view)
 
     def release(self) -> None:
         """Let go."""
@@ -156,24 +157,26 @@ class ShadowTool(HandleTool):
         return True
 
     # -- the lamp ---------------------------------------------------------------------------------
-    def _solve(self, placed: _Placed) -> None:
+    def _solve(self, placed: _Placed, view: PictureView) -> None:
         """Change the lamp so that its shadow, or highlight, lies at the place, as nearly as it can."""
         scene, light = self._editor.scene, self._editor.light
         if light is None:
             return
         if placed.glossy:
             towards = highlight_direction(scene, placed.place)
-            through = placed.place
+            place, through, lit = placed.place, placed.place, True
         else:
-            towards, through = shadow_direction(scene, placed.caster, placed.place), placed.caster
+            ends = _ends(scene, placed, view)
+            towards, through = (ends[0] if ends else None), placed.caster
+            place, lit = (ends[1].point, ends[1].share >= LIT) if ends else (placed.place, True)
         if towards is None:
             return
-        found = aimed(scene, light, towards, placed.place, through)
+        found = aimed(scene, light, towards, place, through)
         if found.fields:
             label = HIGHLIGHT if placed.glossy else SHADOW
             self._editor.change_light(label, True, **found.fields)
             placed.light = self._editor.light
-        self._tell(_complaint(light, found, placed.glossy))
+        self._tell(_complaint(light, found, placed.glossy) or ("" if lit else TURNED_AWAY))
 
     def _tell(self, words: str) -> None:
         self.told.changed.emit(words)
@@ -193,6 +196,15 @@ class ShadowTool(HandleTool):
 def _surface(scene: Scene, view: PictureView, at: Place) -> np.ndarray | None:
     point = surface_under(scene, *view.fractions(at), view.width / view.height)
     return None if point is None else np.asarray(point)
+
+
+def _ends(scene: Scene, placed: _Placed, view: PictureView) -> tuple[np.ndarray, LitPlace] | None:
+    """Return what makes the caster's shadow be seen where the place is."""
+    at = view.place(placed.place)
+    if at is None:
+        return None
+    x, y = view.fractions(at)
+    return shadow_ends(scene, placed.caster, placed.place, (x, y), view.width / view.height)
 
 
 def _complaint(light: Light, found: Aimed, glossy: bool) -> str:

@@ -12,14 +12,15 @@ uniform float u_brightness, u_bias;
 uniform float u_share;           // of the lamps in a mix
 uniform float u_facing;          // how much a surface's slope counts, 0 to 1
 
-// Linear RGB from all around at a place of the volume: the mean of the directions so far.
+// Linear RGB from all around at a place of the volume: the mean of the directions so far (`u_unshadowed` is the marcher's).
 vec3 light_around(vec3 t) {
 #if RESOLVED
     vec4 sum = textureLod(u_map, t * u_map_scale + u_map_offset, 0.0);
 #else
     vec4 sum = packed_value(u_map, t);
 #endif
-    return u_brightness * (u_bias + sum.rgb / max(sum.a, 1e-6));
+    vec3 mean = sum.rgb / max(sum.a, 1e-6);
+    return u_brightness * (u_bias + mix(mean, max(mean, vec3(1.0)), u_unshadowed));
 }
 
 // Both together; the lamps' light is that which reaches the eye, that from all around is so for `color`.

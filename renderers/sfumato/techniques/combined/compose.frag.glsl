@@ -17,7 +17,7 @@ uniform sampler2D u_surface_color;
 uniform int u_margin;
 uniform float u_nothing;             // depth where there is no surface
 uniform float u_ambient;             // share of each lamp that no shadow takes away
-uniform float u_shadow_floor;        // least visibility of a lamp
+uniform float u_unshadowed;          // 1: all light arrives, nothing is in its way
 uniform float u_surface_ambient, u_surface_diffuse, u_surface_specular, u_surface_shininess;
 uniform float u_vicinity;            // strength
 uniform float u_lift[4];             // mm: texel of each lamp's light volume
@@ -56,7 +56,7 @@ vec3 surface_color(vec3 p, vec3 view, vec3 normal, vec3 color, float z) {
     for (int l = 0; l < LIGHTS; ++l) {
         float facing = max(dot(normal, u_towards[l]), 0.0);
         float close = u_vicinity > 0.0 ? mix(1.0, vicinity(l, p + normal * u_vicinity_bias, u_towards[l], z), u_vicinity) : 1.0;
-        float occlusion = max(swept[l] * close, u_shadow_floor);
+        float occlusion = max(swept[l] * close, u_unshadowed);
         float shine = facing > 0.0 ? pow(max(dot(normal, normalize(u_towards[l] + view)), 0.0), u_surface_shininess) : 0.0;
         sum += u_light_color[l] * (color * mix(occlusion, 1.0, u_ambient) * (u_surface_ambient + u_surface_diffuse * facing)
             + occlusion * u_surface_specular * shine);

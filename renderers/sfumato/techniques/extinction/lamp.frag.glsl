@@ -22,7 +22,7 @@ uniform float u_first;               // first section, in cells along the domina
 uniform float u_growth;              // relative growth of the sections
 uniform float u_strength;
 
-uniform float u_shadow_floor;        // least share of what arrives that a shadow leaves
+uniform float u_unshadowed;          // 1: nothing is in the way
 
 layout(location = 0) out float o_light;
 
@@ -153,5 +153,5 @@ void main() {
         weights += 1.0;
     }
 #endif
-    o_light = arriving * max(sum, u_shadow_floor * open) / weights;
+    o_light = arriving * max(sum, u_unshadowed * open) / weights;
 }

@@ -48,17 +48,17 @@ def emitter(frame: Frame, grid: CellGrid, light: Light) -> Emitter:
     """Return a lamp as the cone pass needs it."""
     params, axes = frame.params, np.asarray(frame.volume.direction, dtype=float).T
     tangent = -1.0 if params.cone_angle is None else math.tan(math.radians(params.cone_angle))
-    floor = {"u_shadow_floor": frame.scene.shadow_floor}
+    free = {"u_unshadowed": float(frame.unshadowed)}
     if light.kind == "directional":
         towards = axes @ light.towards(frame.camera.basis(), frame.volume.center)
         tangent = math.tan(math.radians(light.aperture)) if tangent < 0 else tangent
         return _made(
-            False, _disc(params.cones) | floor | {"u_lamp": (*towards.tolist(), 0.0), "u_tangent": tangent}
+            False, _disc(params.cones) | free | {"u_lamp": (*towards.tolist(), 0.0), "u_tangent": tangent}
         )
     place = _in_grid(frame, grid, np.asarray(light.position, dtype=float))
     common: dict[str, Any] = {
         "u_lamp": (*place.tolist(), 1.0), "u_tangent": tangent, "u_radius": light.radius,
-        "u_reach": light.reach or 0.0, **floor,
+        "u_reach": light.reach or 0.0, **free,
     }  # fmt: skip
     shines = axes @ (np.asarray(light.direction) / max(float(np.linalg.norm(light.direction)), 1e-30))
     if light.kind == "area" and light.shape != "sphere":

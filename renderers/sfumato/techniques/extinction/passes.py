@@ -248,7 +248,7 @@ def longest_side(frame: Frame) -> int:
 def _plan(frame: Frame, material: Material, longest: int) -> Plan:
     params, scene = frame.params, frame.scene
     grid, radius = grid_over(frame, material, longest), shell_radius(frame)
-    shelled = params.shells > 0 and params.ambient > 0
+    shelled = params.shells > 0 and params.ambient > 0 and not frame.unshadowed
     shown = (frame.volume.key, frame.transfer) if shelled and params.bleeding > 0 else material.opacity_key
     matter = (material.opacity_key, scene.clip, scene.crop, grid)
     field = (matter, (shown, params.bleeding, radius) if shelled else None)

@@ -29,7 +29,7 @@ float returned(float eye, float light) {
 #endif
 }
 
-uniform float u_shadow_floor;        // least visibility of the lamp
+uniform float u_unshadowed;          // 1: all light arrives, nothing is in its way
 
 void main() {
     Ray ray = view_ray(gl_FragCoord.xy);
@@ -60,8 +60,9 @@ void main() {
     float light_depth = classify(volume_value(here + u_light_half), volume_value(here - u_light_half), magnitude).a;
     light_depth *= u_spacing * u_light_secant;
     vec3 at = ray.origin + ray.direction * z;
-    float visible = max(textureLod(u_light, u_light_from_world * vec4(at, 1.0), 0.0).r, u_shadow_floor);
-    vec3 c = mean.rgb / mean.a * u_light_color * (visible * u_facing * returned(depth, light_depth));
+    float visible = textureLod(u_light, u_light_from_world * vec4(at, 1.0), 0.0).r;
+    float lit = mix(visible * u_facing * returned(depth, light_depth), alpha, u_unshadowed);
+    vec3 c = mean.rgb / mean.a * u_light_color * lit;
 #if EMISSION
     c += alpha * classify_emission(enter, leave, magnitude) / mean.a;
 #endif

@@ -66,8 +66,9 @@ class LocalOcclusionPainter:
         yield 0.0
         light = self.gatherer.light_map(frame, material, blocks)
         least, seconds = (LEAST, max(SECONDS, self._drawing)) if frame.quality.progressive else (1 << 20, 0.0)
-        for done in self.gatherer.gather(frame, material, blocks, light, least, seconds):
-            yield GATHERED * done
+        if not frame.unshadowed:
+            for done in self.gatherer.gather(frame, material, blocks, light, least, seconds):
+                yield GATHERED * done
         frame.light = light.share
         began = time.perf_counter()
         resolved = self.resolver.resolved(frame, blocks, light)

@@ -16,7 +16,7 @@ TECHNIQUES = (
         RaycastParams,
         "..techniques.marcher:MarchPainter",
         source="Max1995",
-        floor=False,
+        shadows=False,
         lit=False,
         options={"slices": False, "phong": False},
     ),
@@ -27,7 +27,7 @@ TECHNIQUES = (
         RaycastPhongParams,
         "..techniques.marcher:MarchPainter",
         source="Levoy1988",
-        floor=False,
+        shadows=False,
         options={"slices": False, "phong": True},
     ),
 )

@@ -28,7 +28,13 @@ class ReferencePainter:
         )
         params = frame.params
         yield from cone.passes(
-            scene, frame.size, picture, params.directions, params.light_step * frame.quality.step, frame.index
+            scene,
+            frame.size,
+            picture,
+            params.directions,
+            params.light_step * frame.quality.step,
+            frame.index,
+            unshadowed=frame.unshadowed,
         )
         frame.target.write(picture.astype(np.float32))
 

@@ -17,7 +17,7 @@ TECHNIQUES = (
         SlicesParams,
         "..techniques.marcher:MarchPainter",
         source="Soltesova2010",
-        floor=False,
+        shadows=False,
         lit=False,
         options={"slices": True, "phong": False},
     ),
@@ -28,7 +28,7 @@ TECHNIQUES = (
         SlicesPhongParams,
         "..techniques.marcher:MarchPainter",
         source="Soltesova2010",
-        floor=False,
+        shadows=False,
         options={"slices": True, "phong": True},
     ),
 )
