@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import threading
+import time
+
 import numpy as np
 import pytest
 from nibabel.streamlines import Tractogram, TrkFile
@@ -10,7 +13,7 @@ from qtpy.QtGui import QDragEnterEvent, QDropEvent
 from qtpy.QtWidgets import QApplication
 
 from sfumato import Geometry, Lines, Scene
-from sfumato.geometry import color_bars
+from sfumato.geometry import color_bars, meshing
 from sfumato.techniques import technique_with_geometry
 
 LEFT = Qt.MouseButton.LeftButton
@@ -154,6 +157,46 @@ def test_several_are_listed_and_removed(window, shapes, qtbot):
     assert not shapes.isVisible()
     window.editor.undo()
     assert shapes.isVisible()
+
+
+def test_changed_tubes_are_built_beside_the_picture(window, shapes, hand, qtbot, monkeypatch):
+    """Neither the window's nor the render thread builds them; till then the old ones are shown."""
+    hand.wait_for_picture()
+    built, whole = [], meshing.build
+
+    def build(geometry):
+        built.append(threading.current_thread().name)
+        return whole(geometry)
+
+    monkeypatch.setattr(meshing, "build", build)
+    before = shown(window)
+    window.editor.change("Thicker", **{"geometry.0.radius": 2 * before.radius})
+    stand_in = window.driver.builder.buildable(window.editor.scene).geometry[0]
+    assert stand_in.radius in (before.radius, 2 * before.radius)
+    hand.wait_for_picture()
+    assert built == ["sfumato-meshes"]
+    assert window.viewport.picture.scene.geometry[0].radius == 2 * before.radius
+
+
+def test_a_change_that_takes_long_can_be_given_up(window, shapes, hand, qtbot, monkeypatch):
+    hand.wait_for_picture()
+
+    def slow(geometry):
+        for k in range(2000):
+            time.sleep(0.01)
+            yield k / 2000
+        raise AssertionError("not given up")
+
+    monkeypatch.setattr(meshing, "build", slow)
+    before = shown(window).radius
+    window.editor.change("Thicker", **{"geometry.0.radius": 2 * before})
+    qtbot.waitUntil(lambda: window.messages.kind == "progress", timeout=20_000)
+    assert window.messages.text.startswith("Building tubes")
+    assert window.viewport.picture.scene.geometry[0].radius == before
+    window.messages.cancelled.emit()
+    qtbot.waitUntil(lambda: not window.driver.builder.alive, timeout=20_000)
+    assert shown(window).radius == before
+    qtbot.waitUntil(lambda: window.messages.kind == "", timeout=20_000)
 
 
 # -- bad input, told with counts -------------------------------------------------------------------

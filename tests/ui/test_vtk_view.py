@@ -14,7 +14,7 @@ from qtpy.QtCore import QPoint, QPointF, Qt
 from qtpy.QtGui import QGuiApplication
 from qtpy.QtWidgets import QApplication
 
-from sfumato import Camera, Geometry, Lines, Scene, TransferFunction
+from sfumato import Camera, Geometry, Lines, Scene, Surface, TransferFunction
 from sfumato_ui.tools.view import PictureView
 from sfumato_ui.vtk_view.link import camera_of
 from sfumato_ui.window import MainWindow
@@ -181,6 +181,35 @@ def test_a_line_is_picked_and_its_neighbours_kept(both: MainWindow, qtbot: Any) 
     assert panel.told.text() == "Line 2: 12 mm, fa 2"
 
 
+def test_what_is_picked_is_what_lies_under_the_pointer(both: MainWindow, qtbot: Any) -> None:
+    """A line nearer to the eye that passes 4 pixels beside it is not taken for it, nor one that a surface hides."""
+    stage, camera = wait_for_stage(both, qtbot), Camera(position=(20, -100, 20), focal_point=(20, 20, 20))
+    both.editor.change("Look", camera=camera)
+    mm = PictureView(camera, stage.view.width(), stage.view.height()).mm_per_pixel(np.array([20.0, 20, 20]))
+    near, far = [[4, 19, 20 + 4 * mm], [36, 19, 20 + 4 * mm]], [[4, 20, 20], [36, 20, 20]]
+    hidden = [[4, 30, 14], [36, 30, 14]]
+    square = Surface(
+        np.array([[0.0, 25, 10], [40, 25, 10], [40, 25, 17], [0, 25, 17]]), np.array([[0, 1, 2], [0, 2, 3]])
+    )
+    lines = Geometry(Lines.of([near, far, hidden]), radius=0.05)
+    both.editor.change("Three", geometry=(lines, Geometry(square)))
+    stage = wait_for_stage(both, qtbot)
+    picks: list[Any] = []
+    points: list[Any] = []
+    stage.picked.connect(picks.append)
+    stage.clicked.connect(points.append)
+    for point in ([12, 20, 20], [12, 19, 20 + 4 * mm], [12, 30, 14]):
+        at = places_in_vtk(stage, np.array([point], float))[0]
+        stage.pick(QPointF(*at))
+        assert np.abs(places_in_vtk(stage, np.array(points[-1:]))[0] - at).max() < 0.1
+    assert [p and p.line for p in picks] == [1, 0, None]
+    assert points[2][1] == pytest.approx(25, abs=0.01), "on the surface"
+    both.editor.change("One", geometry=(lines,))
+    stage = wait_for_stage(both, qtbot)
+    stage.pick(QPointF(*at))
+    assert picks[-1].line == 2
+
+
 def choose(panel: Any, name: str) -> None:
     index = panel.tool.findData(name)
     assert index >= 0, f"{name} is not offered"
@@ -271,6 +300,8 @@ def test_single_seeds_and_seeds_on_a_surface(make_window: Any, flow: str, tmp_pa
     qtbot.waitUntil(lambda: len(seeds().places) == 2, timeout=60_000)
     first = np.array(seeds().places[0])
     assert np.linalg.norm(first - 20) < 10, "on the ball, or on a line before it"
+    seen = places_in_vtk(stage, first[None])[0]
+    assert np.abs(seen - (on_ball.x(), on_ball.y())).max() < 1, "where the click was"
 
 
 def test_seeds_are_placed_and_streamlines_follow(
@@ -306,10 +337,11 @@ def test_without_vtk_the_rest_lives_on(
 ) -> None:
     import pyvistaqt
 
-    def broken(*_: object, **__: object) -> None:
-        raise RuntimeError("no OpenGL 3.2 here")
+    class Broken:
+        def __init__(self, *_: object, **__: object) -> None:
+            raise RuntimeError("no OpenGL 3.2 here")
 
-    monkeypatch.setattr(pyvistaqt, "QtInteractor", broken)
+    monkeypatch.setattr(pyvistaqt, "QtInteractor", Broken)
     qtbot.mouseClick(window.strip.vtk, LEFT)
     qtbot.waitUntil(lambda: window.messages.kind == "error", timeout=60_000)
     assert "no OpenGL 3.2 here" in window.messages.text

@@ -6,6 +6,7 @@ from qtpy.QtCore import QObject, QTimer
 
 from sfumato import Scene
 
+from .building import MeshBuilder
 from .editing import Editor
 from .jobs import Picture, ViewRequest
 from .quality import chosen_quality
@@ -25,6 +26,9 @@ class ViewDriver(QObject):
     def __init__(self, editor: Editor, viewport: Viewport, worker: RenderWorker) -> None:
         super().__init__(viewport)
         self._editor, self._viewport, self._worker = editor, viewport, worker
+        #: Builds the meshes of changed geometry.
+        self.builder = MeshBuilder(self)
+        self.builder.built.connect(self.ask)
         self._unlit = False
         self._audit = 0.0
         self._frames = chosen_quality().frames
@@ -73,12 +77,14 @@ class ViewDriver(QObject):
     def stop(self) -> None:
         """Ask for nothing more."""
         self._still.stop()
+        self.builder.close()
 
     def _request(self, interactive: bool) -> None:
         if is_drawable(self.shown_scene) and self._viewport.isVisible():
             size = self._viewport.pixel_size
             audit = 0.0 if self._unlit else self._audit
-            self._worker.show(ViewRequest(self.shown_scene, size, interactive, self._frames, audit))
+            scene = self.builder.buildable(self.shown_scene)
+            self._worker.show(ViewRequest(scene, size, interactive, self._frames, audit))
 
     def _on_picture(self, picture: Picture) -> None:
         """Show a picture, unless it is of data that are no longer open."""

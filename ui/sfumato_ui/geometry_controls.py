@@ -8,7 +8,7 @@ from qtpy.QtCore import QSignalBlocker, Qt, Signal
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from sfumato import Geometry, Lines, Scene
-from sfumato.geometry import kept_lines
+from sfumato.geometry import kept_lines, known_mesh
 from sfumato.scene import fields_of
 
 from .color_button import ColorButton
@@ -161,8 +161,13 @@ class GeometryControls(Section):
         self.visible.setAccessibleName("Hide" if geometry.visible else "Show")
         self.visible.setToolTip("Hide it; it casts no shadow then" if geometry.visible else "Show it again")
         self.remove.setToolTip(f"Remove {geometry.name or geometry.kind} from the scene")
-        self.count.setText(_count_text(geometry))
+        self.show_count()
         self.refresh_theme()
+
+    def show_count(self) -> None:
+        """Say how much of the selected geometry is shown."""
+        if self.geometry_shown is not None:
+            self.count.setText(_count_text(self.geometry_shown))
 
     @property
     def _prefix(self) -> str:
@@ -267,10 +272,15 @@ def _sized_slider(name: str, geometry: Geometry) -> LabelledSlider:
 def _count_text(geometry: Geometry) -> str:
     """Say how much of it is shown."""
     if not isinstance(geometry.shape, Lines):
-        return f"{geometry.shape.count:,} triangles".replace(",", " ")
+        return f"{_spaced(geometry.shape.count)} triangles"
     shown, count = int(kept_lines(geometry).sum()), geometry.shape.count
-    lines = f"{count:,} lines".replace(",", " ")
-    return lines if shown == count else f"{shown:,} of ".replace(",", " ") + lines
+    text = f"{_spaced(count)} lines" if shown == count else f"{_spaced(shown)} of {_spaced(count)} lines"
+    mesh = known_mesh(geometry)
+    return text if mesh is None or mesh.shown >= shown else f"{text}; {_spaced(mesh.shown)} drawn"
+
+
+def _spaced(number: int) -> str:
+    return f"{number:,}".replace(",", " ")
 
 
 def _button(name: str, checkable: bool = False) -> QToolButton:

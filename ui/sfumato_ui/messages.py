@@ -20,6 +20,7 @@ from qtpy.QtWidgets import (
 )
 
 from .icons import icon
+from .status import set_quietly
 from .theme import current_theme
 
 #: A notice goes away by itself after this, in milliseconds; an error stays until it is closed.
@@ -108,7 +109,7 @@ class MessageBar(QFrame):
 
     def show_progress(self, text: str, fraction: float) -> None:
         """Say how far something is (0 to 1), with a button to give it up."""
-        self._bar.setValue(round(1000 * max(0.0, min(1.0, fraction))))
+        set_quietly(self._bar, round(1000 * max(0.0, min(1.0, fraction))))
         if self.kind != "progress" or self._text.text() != text:
             self._show("progress", text)
 

@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+import time
+
 from qtpy.QtCore import QSize, Qt
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QSizePolicy, QToolButton
 
 from sfumato import Volume
 
 from .jobs import Picture
+
+#: Least time between two steps of the bar, in seconds.
+PROGRESS_SECONDS = 0.1
+
+
+def set_quietly(bar: QProgressBar, value: int) -> None:
+    """Set a bar's value and let it be painted with all else: by itself Qt paints, and composes the window, at once."""
+    bar.setUpdatesEnabled(False)
+    bar.setValue(value)
+    bar.setUpdatesEnabled(True)
 
 
 class StatusLine(QFrame):
@@ -38,6 +50,7 @@ class StatusLine(QFrame):
         row.addWidget(self.renderer, 1)
         self.bar.hide()
         self._buttons = 0
+        self._told = 0.0
 
     def add_button(self, button: QToolButton) -> None:
         """Put a button at the line's beginning, behind those that are there."""
@@ -68,7 +81,11 @@ class StatusLine(QFrame):
 
     def show_progress(self, fraction: float) -> None:
         """Show how far the refinement is (0 to 1)."""
-        self.bar.setValue(round(1000 * fraction))
+        now = time.monotonic()
+        if fraction < 1 and self.bar.isVisible() and now - self._told < PROGRESS_SECONDS:
+            return
+        self._told = now
+        set_quietly(self.bar, round(1000 * fraction))
         self.bar.setVisible(fraction < 1)
 
     def show_renderer(self, name: str) -> None:

@@ -178,6 +178,11 @@ class MainWindow(QMainWindow):
         self.drawer.changed.connect(lambda page: self.compare.end() if page != "compare" else None)
         worker.progress.connect(self.status.show_progress)
         worker.ready.connect(self.status.show_renderer)
+        builder = self.driver.builder
+        builder.progress.connect(self._show_building)
+        builder.built.connect(self.view_page.shapes.show_count)
+        self.messages.cancelled.connect(builder.give_up)
+        builder.given_up.connect(lambda shown: editor.change("Leave geometry as it was", geometry=shown))
         self.files.opened.connect(self._show_document)
         self.files.scene_saved.connect(self._show_title)
         self.files.scene_saved.connect(self.autosave.watch)
@@ -242,6 +247,13 @@ class MainWindow(QMainWindow):
         camera = camera_moves.whole_view(self.editor.scene, self.viewport.aspect, view)
         if camera is not None:
             self.editor.change(f"View from the {view}" if view else "See the whole", camera=camera)
+
+    def _show_building(self, done: float, text: str) -> None:
+        """Tell how far meshes are, unless the bar has something else to tell."""
+        if done < 1 and self.messages.kind in ("", "progress"):
+            self.messages.show_progress(f"{text}…", done)
+        elif done >= 1 and self.messages.text.startswith("Building"):
+            self.messages.clear("progress")
 
     def _choose_tool(self, name: str) -> None:
         self.viewport.tool = name

@@ -6,6 +6,7 @@
 `cleaning`         what a file holds becomes a shape: bad lines are left out and counted
 `field`            vector fields;  `seeding`: seeds;  `streamlines`: vtkStreamTracer
 `polyline`         filters, B-spline, thinning out: all lines at once
+`detail`           level of detail by count
 `tubes`            the sweep;  `color`: colours of points;  `meshing`: all of it, kept
 `known`            what a scene names;  `color_bar`: what a picture needs to draw one
 =================  ==============================================================================
@@ -18,7 +19,7 @@ from .color_bar import ColorBar, color_bar, color_bars
 from .field import VectorField, has_vectors, load_field
 from .known import load_known
 from .load import SUFFIXES, is_geometry, load_geometry, outside_notice
-from .meshing import build, mesh_of
+from .meshing import build, known_mesh, mesh_of
 from .polyline import kept_lines
 from .seeding import suggest_seeds
 from .streamlines import trace
@@ -33,6 +34,7 @@ __all__ = [
     "has_vectors",
     "is_geometry",
     "kept_lines",
+    "known_mesh",
     "load_field",
     "load_geometry",
     "load_known",

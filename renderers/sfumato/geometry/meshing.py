@@ -5,28 +5,27 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Generator
+from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
 from ..scene.geometry import Geometry, value_range
 from ..scene.shapes import Mesh, Surface
 from .color import point_colors
+from .detail import FEWEST_SIDES, TOLERANCE, automatic_sides, clustered, fitted
 from .polyline import Strand, smoothed, split, strand_of, thinned_out, without_repeats
 from .tubes import Tubes, sweep, tangents_of
 
-#: Level of detail: beyond so many triangles, tubes get fewer sides, then their axes fewer points. Lines are
-#: never left out (that is what the filters are for), so millions of them may still take more.
+#: Level of detail (`detail`): most triangles of tubes, and of what is drawn while something moves.
 BUDGET_TRIANGLES = 2_000_000
-MOST_SIDES, FEWEST_SIDES = 12, 4
-#: How far, in radii, a tube's axis may leave its line for the sake of fewer points: nothing that is seen.
-TOLERANCE = 0.05
-#: How far it may leave it, in radii, when there are too many points for the budget even with few sides.
-COARSEST = 0.5
+MOVING_TRIANGLES = 300_000
 #: Meshes kept for geometries that come back (undo, other views).
 CACHE_BYTES = 1 << 30
 _CHUNK_POINTS = 100_000
 
 Progress = Callable[[float, str], object]
+Result = TypeVar("Result")
 
 _cache: OrderedDict[str, Mesh] = OrderedDict()
 _lock = threading.Lock()
@@ -50,27 +49,37 @@ def mesh_of(geometry: Geometry, progress: Progress | None = None) -> Mesh:
     SceneError
         If the colour map is not known.
     """
-    key = geometry.mesh_key
-    with _lock:
-        if key in _cache:
-            _cache.move_to_end(key)
-            return _cache[key]
+    known = known_mesh(geometry)
+    if known is not None:
+        return known
     work = build(geometry)
     while True:
         try:
             done = next(work)
         except StopIteration as stop:
-            return _keep(key, stop.value)
+            mesh: Mesh = stop.value
+            return mesh
         if progress is not None:
             progress(done, "Building tubes")
 
 
+def known_mesh(geometry: Geometry) -> Mesh | None:
+    """Return the mesh that shows a geometry if it was built before."""
+    key = geometry.mesh_key
+    with _lock:
+        if key in _cache:
+            _cache.move_to_end(key)
+        return _cache.get(key)
+
+
 def build(geometry: Geometry) -> Generator[float, None, Mesh]:
-    """Build a mesh in pieces: yields the progress, 0..1, and returns the mesh."""
+    """Build a mesh in pieces, and keep it: yields the progress, 0..1, and returns the mesh."""
     if isinstance(geometry.shape, Surface):
         yield 0.0
-        return _surface_mesh(geometry, geometry.shape)
-    return (yield from _tube_mesh(geometry))
+        mesh = yield from _surface_mesh(geometry, geometry.shape)
+    else:
+        mesh = yield from _tube_mesh(geometry)
+    return _keep(geometry.mesh_key, mesh)
 
 
 def _keep(key: str, mesh: Mesh) -> Mesh:
@@ -81,10 +90,14 @@ def _keep(key: str, mesh: Mesh) -> Mesh:
     return mesh
 
 
-def _surface_mesh(geometry: Geometry, shape: Surface) -> Mesh:
+def _surface_mesh(geometry: Geometry, shape: Surface) -> Generator[float, None, Mesh]:
     values = geometry.scalar_values(geometry.scalar) if geometry.color_by == "scalar" else None
     assert shape.normals is not None
-    return Mesh(shape.points, shape.normals, shape.triangles, point_colors(geometry, shape.normals, values))
+    mesh = Mesh(shape.points, shape.normals, shape.triangles, point_colors(geometry, shape.normals, values))
+    yield 0.3
+    if len(mesh.triangles) > 2 * MOVING_TRIANGLES:
+        mesh = replace(mesh, coarse=clustered(mesh, MOVING_TRIANGLES))
+    return mesh
 
 
 def _tube_mesh(geometry: Geometry) -> Generator[float, None, Mesh]:
@@ -99,37 +112,54 @@ def _tube_mesh(geometry: Geometry) -> Generator[float, None, Mesh]:
         if len(run.points):
             parts.append(thinned_out(run, TOLERANCE * geometry.radius))
         yield 0.05 + 0.25 * (i + 1) / len(pieces)
-    sides = geometry.sides or automatic_sides(sum(len(p.points) for p in parts))
     if not geometry.sides:
-        yield from _coarsened(parts, geometry.radius)
-    swept, colors = [], []
+        parts = yield from _span(fitted(parts, geometry.radius, BUDGET_TRIANGLES), 0.3, 0.6)
+    sides = geometry.sides or automatic_sides(parts, BUDGET_TRIANGLES)
+    mesh = yield from _span(_swept(geometry, parts, names, max(sides, 3)), 0.6, 0.9)
+    if len(mesh.triangles) <= 2 * MOVING_TRIANGLES:
+        return mesh
+    rough = yield from _span(fitted(parts, geometry.radius, MOVING_TRIANGLES), 0.9, 0.97)
+    coarse = yield from _span(_swept(geometry, rough, names, FEWEST_SIDES), 0.97, 1.0)
+    return replace(mesh, coarse=coarse)
+
+
+def _span(work: Generator[float, None, Result], low: float, high: float) -> Generator[float, None, Result]:
+    """Let a part's progress run from one share of the whole to another."""
+    while True:
+        try:
+            done = next(work)
+        except StopIteration as stop:
+            result: Result = stop.value
+            return result
+        yield low + (high - low) * done
+
+
+def _swept(
+    geometry: Geometry, parts: list[Strand], names: tuple[str, ...], sides: int
+) -> Generator[float, None, Mesh]:
+    """Sweep tubes along lines."""
+    swept, colors, axes = [], [], []
     for i, part in enumerate(parts):
-        tangents = tangents_of(part)
-        tubes = sweep(part, tangents, _radius(geometry, part, names), max(sides, 3))
+        tangents, radius = tangents_of(part), _radius(geometry, part, names)
+        tubes = sweep(part, tangents, radius, sides)
         values = part.values[:, names.index(geometry.scalar)] if geometry.color_by == "scalar" else None
         swept.append(tubes)
         colors.append(point_colors(geometry, tangents, values)[tubes.source])
-        yield 0.4 + 0.5 * (i + 1) / len(parts)
-    return _joined(swept, colors)
+        axes.append(_axes(part, radius))
+        yield (i + 1) / len(parts)
+    lines = sum(len(p.points) - len(a) for p, a in zip(parts, axes, strict=True))
+    return _joined(swept, colors, axes, lines)
 
 
-def _coarsened(parts: list[Strand], radius: float) -> Generator[float, None, None]:
-    """Thin lines out further, in place, if they take more than the budget even with few sides."""
-    if sum(len(p.points) for p in parts) * 2 * FEWEST_SIDES <= BUDGET_TRIANGLES:
-        return
-    for i, part in enumerate(parts):
-        parts[i] = thinned_out(part, COARSEST * radius)
-        yield 0.3 + 0.1 * (i + 1) / len(parts)
+def _axes(part: Strand, radius: np.ndarray) -> np.ndarray:
+    joined = part.joined
+    ends = part.points[:-1][joined], part.points[1:][joined]
+    return np.column_stack([*ends, 0.5 * (radius[:-1] + radius[1:])[joined]])
 
 
 def _scalars_needed(geometry: Geometry) -> tuple[str, ...]:
     wanted = [geometry.scalar] if geometry.color_by == "scalar" else []
     return tuple(dict.fromkeys([*wanted, *filter(None, [geometry.radius_by])]))
-
-
-def automatic_sides(points: int) -> int:
-    """Return how many sides tubes with so many points in all get: 12, or fewer to stay in the budget."""
-    return int(np.clip(BUDGET_TRIANGLES // max(2 * points, 1), FEWEST_SIDES, MOST_SIDES))
 
 
 def _radius(geometry: Geometry, part: Strand, names: tuple[str, ...]) -> np.ndarray:
@@ -141,7 +171,7 @@ def _radius(geometry: Geometry, part: Strand, names: tuple[str, ...]) -> np.ndar
     return np.asarray(geometry.radius * share, np.float32)
 
 
-def _joined(swept: list[Tubes], colors: list[np.ndarray]) -> Mesh:
+def _joined(swept: list[Tubes], colors: list[np.ndarray], axes: list[np.ndarray], lines: int) -> Mesh:
     if not swept:
         nothing = np.empty((0, 3), np.float32)
         return Mesh(nothing, nothing, nothing.astype(np.uint32), nothing)
@@ -151,7 +181,8 @@ def _joined(swept: list[Tubes], colors: list[np.ndarray]) -> Mesh:
         np.concatenate([t.normals for t in swept]),
         np.concatenate([t.triangles + np.uint32(s) for t, s in zip(swept, starts, strict=True)]),
         np.concatenate(colors),
+        np.concatenate(axes),
     )
     for array in arrays:
         array.flags.writeable = False  # a mesh takes them as they are, then, without a copy
-    return Mesh(*arrays)
+    return Mesh(*arrays, shown=lines)

@@ -168,19 +168,21 @@ def _spline_weights(t: float) -> tuple[float, float, float, float]:
     return (1 - t) ** 3 / 6, (3 * t**3 - 6 * t**2 + 4) / 6, (-3 * t**3 + 3 * t**2 + 3 * t + 1) / 6, t**3 / 6
 
 
-def thinned_out(strand: Strand, tolerance: float, rounds: int = 4) -> Strand:
+def thinned_out(strand: Strand, tolerance: float, rounds: int = 4, bend: float = 0.01) -> Strand:
     """Leave out points that lie nearer than a tolerance to the chord of their neighbours.
 
     Every second point at most goes in a round, so that neighbours are never left out together; each round
     may move the line by half of the tolerance, the later ones rarely where an earlier one did. Values that
-    bend by more than 1 % of their range keep their point too.
+    bend too much keep their point too.
 
     Parameters
     ----------
     tolerance : float
         In mm.
+    bend : float
+        Of values, as a part of their largest.
     """
-    scale = np.nanmax(np.abs(strand.values), axis=0, initial=0.0)
+    slack = bend * np.nanmax(np.abs(strand.values), axis=0, initial=0.0)
     for _ in range(rounds):
         count = len(strand.points)
         inner = np.concatenate([[False], strand.joined[1:] & strand.joined[:-1], [False]])
@@ -188,7 +190,7 @@ def thinned_out(strand: Strand, tolerance: float, rounds: int = 4) -> Strand:
         odd = np.flatnonzero(inner & (number % 2 == 1))
         if not len(odd):
             return strand
-        dropped = odd[_straight(strand, odd, tolerance / 2, scale)]
+        dropped = odd[_straight(strand, odd, tolerance / 2, slack)]
         mask = np.ones(count, dtype=bool)
         mask[dropped] = False
         strand = strand.taken(mask)
@@ -201,7 +203,7 @@ def _begins(strand: Strand) -> np.ndarray:
     return np.concatenate([[True], ~strand.joined])
 
 
-def _straight(strand: Strand, index: np.ndarray, tolerance: float, scale: np.ndarray) -> np.ndarray:
+def _straight(strand: Strand, index: np.ndarray, tolerance: float, slack: np.ndarray) -> np.ndarray:
     """Tell which points are between their neighbours, and near the chord: by columns, which is quicker."""
     before = strand.points[index - 1]
     chord, here = strand.points[index + 1] - before, strand.points[index] - before
@@ -213,7 +215,7 @@ def _straight(strand: Strand, index: np.ndarray, tolerance: float, scale: np.nda
     if strand.values.shape[1]:
         left, value, right = (strand.values[index + k] for k in (-1, 0, 1))
         mixed = left + along[:, None] * (right - left)
-        straight &= (np.abs(value - mixed) <= 0.01 * scale).all(axis=1)
+        straight &= (np.abs(value - mixed) <= slack).all(axis=1)
     return np.asarray(straight)
 
 

@@ -211,15 +211,26 @@ class Mesh(_Keyed):
         Indices of points, counter-clockwise seen from outside; m may be 0 when every line is filtered away.
     colors : ndarray, shape (n, 3), float32
         Linear RGB.
+    axes : ndarray, shape (k, 7), float32, optional
+        Of tubes: begin, end and radius in mm of each straight piece.
+    coarse : Mesh, optional
+        The same with fewer triangles, for pictures while something moves; none if there are few as it is.
+    shown : int
+        Of tubes: how many lines there are; less than the filters leave if the budget has no room for more.
     """
 
     points: np.ndarray
     normals: np.ndarray
     triangles: np.ndarray
     colors: np.ndarray
+    axes: np.ndarray | None = None
+    coarse: Mesh | None = None
+    shown: int = 0
 
     def __post_init__(self) -> None:
         count = len(self.points)
+        if self.axes is not None:
+            object.__setattr__(self, "axes", frozen(self.axes, np.float32, "mesh.axes", 7, finite=False))
         for name in ("points", "normals", "colors"):
             array = frozen(getattr(self, name), np.float32, f"mesh.{name}", 3, count, finite=False)
             object.__setattr__(self, name, array)
@@ -229,7 +240,9 @@ class Mesh(_Keyed):
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
         """Everything that makes its content."""
-        return self.points, self.normals, self.triangles, self.colors
+        more = self.coarse.arrays if self.coarse is not None else ()
+        axes = (self.axes,) if self.axes is not None else ()
+        return (self.points, self.normals, self.triangles, self.colors, *axes, *more)
 
     @functools.cached_property
     def bounds(self) -> np.ndarray:

@@ -32,6 +32,11 @@ class Quality:
     light: float = 1.0
     progressive: bool = False
 
+    @property
+    def rough(self) -> bool:
+        """Whether the picture is a passing one, while something moves."""
+        return self.step > 1
+
 
 #: Everything that was asked for.
 FULL = Quality()

@@ -23,6 +23,7 @@ import moderngl
 import numpy as np
 
 from ..gpu import Device, LayerTarget, Program, Variants
+from .casters import VOLUME_ALONE, Casters, cover_corners
 from .frame import Frame
 from .marcher import Material, bind_material, blocks_along, material_defines, visible_corners
 from .stack import PAD, Lattice, Stack, View
@@ -93,38 +94,6 @@ def shares_of(view: View, frame: Frame, offsets: np.ndarray, secants: np.ndarray
     cosines = np.abs(towards @ np.asarray(frame.camera.basis().back)) / secants
     weights = cosines / (1 + cosines)
     return np.asarray(weights / weights.sum())
-
-
-#: Centres of blocks in which something stands along a view's axes in mm, shape (n, 3), and half their extents.
-Blocks = tuple[np.ndarray, np.ndarray]
-
-
-@dataclass(frozen=True)
-class Casters:
-    """What else than the volume stands in a lamp's way, and whether the volume does.
-
-    Attributes
-    ----------
-    cover : texture or None
-        How much of each texel geometry covers, the slabs side by side (`combined.cover`).
-    columns : int
-        Slabs in a row of it.
-    opacity : float
-        What geometry that covers a texel takes away.
-    blocks : tuple of (centres, half extents)
-        Where geometry stands.
-    volume : bool
-        Whether the volume casts shadows.
-    """
-
-    cover: Any = None
-    columns: int = 1
-    opacity: float = 1.0
-    blocks: tuple[Blocks, ...] = ()
-    volume: bool = True
-
-
-VOLUME_ALONE = Casters()
 
 
 @dataclass(frozen=True)
@@ -253,16 +222,6 @@ def secant_uniforms(secants: np.ndarray) -> dict[str, Any]:
     return {"u_secants": tuple(nodes.tolist()), **packed}
 
 
-def cover_corners(slab: int, columns: int, size: tuple[int, int]) -> np.ndarray:
-    """Return where in a picture of coverage a slab lies and the two that light met before; -1 where there is none."""
-    corners = np.full((3, 2), -1, np.int32)
-    for k in range(3):
-        at = slab - k
-        if at >= 0:
-            corners[k] = at % columns * size[0], at // columns * size[1]
-    return corners
-
-
 class LightSweeper:
     """Sweeps lamps; keeps its programs and the two states that take turns."""
 
@@ -335,7 +294,7 @@ class LightSweeper:
         self._lists = grid.tiles(frame, material, casters)
         self._tiles.upload(self._lists)
         self._to_texture = texture_from_view(frame, lattice.stack)
-        number = (("DIRECTIONS", DIRECTIONS), ("LAST", DIRECTIONS // 4))
+        number = (("DIRECTIONS", DIRECTIONS), ("LAST", DIRECTIONS // 4), ("SHEARED", 0))
         kind = (("HOLLOW", 0), ("GEOMETRY", int(covered)), ("VOLUME", int(casters.volume)))
         full = self._programs.get((*number, *kind, *material_defines(material)))
         bind_material(full, material, frame)

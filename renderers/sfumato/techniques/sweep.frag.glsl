@@ -2,6 +2,8 @@
 //
 // LITERAL    0: our extinction form, 1: additive (Soltesova2010, 13-14), 2: multiplicative (Schott2009)
 // HOLLOW     nothing stands in these tiles: filter only
+// VOLUME     the volume casts shadows
+// GEOMETRY   geometry does
 // FILTER     0: this slab passes light on along its columns; the next filtering makes up for it
 //
 // State, one texel a column: (T, s). T: transmittance behind the slab (additive: accumulated occlusion O); s: the volume's value
@@ -11,6 +13,9 @@
 #include "volume"
 #include "clip"
 #include "transfer"
+#endif
+#if !HOLLOW && GEOMETRY
+#include "cover"
 #endif
 
 uniform sampler2D u_state;
@@ -52,17 +57,22 @@ void main() {
 #else
     float tau = classify_extinction(s0, value);
 #endif
-    float absorbed = tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
+    float absorbed = float(VOLUME) * tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
+#endif
+#if !HOLLOW && GEOMETRY
+    float passed = cover_passes(ivec2(gl_FragCoord.xy)).x;
+#else
+    const float passed = 1.0;
 #endif
 
 #if LITERAL == 1
     o_visibility = 1.0 / (1.0 + light);
-    o_state = vec2(light + 1.0 - exp(-absorbed), value);
+    o_state = vec2(light + 1.0 - exp(-absorbed) * passed, value);
 #elif LITERAL == 2
     o_visibility = light;
-    o_state = vec2(light * exp(-absorbed), value);
+    o_state = vec2(light * exp(-absorbed) * passed, value);
 #else
     o_visibility = light;
-    o_state = vec2(light * exp(-absorbed * u_path), value);
+    o_state = vec2(light * exp(-absorbed * u_path) * passed, value);
 #endif
 }

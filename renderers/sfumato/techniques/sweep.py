@@ -16,6 +16,7 @@ import moderngl
 import numpy as np
 
 from ..gpu import Device, LayerTarget, Program, Variants
+from .casters import VOLUME_ALONE, Casters, cover_corners
 from .footprint import Stencil, effective_secant, kernel_moments, stencil_for
 from .frame import Frame
 from .marcher import Material, bind_material, blocks_along, material_defines
@@ -61,6 +62,7 @@ def lamps_for(
     stack: Stack,
     angles: Sequence[tuple[float, float]],
     apertures: Sequence[float],
+    casters: Casters = VOLUME_ALONE,
 ) -> tuple[Lamp, ...]:
     """Return lattice, stencil and tiles of each light, given by (tilt, rotation) and aperture in degrees."""
     texel = frame.volume.min_spacing / frame.params.resolution * frame.quality.light
@@ -83,13 +85,14 @@ def lamps_for(
     reach = min(widest, max((abs(c) for stencil in stencils for tap in stencil.taps for c in tap), default=0))
     # A slab's columns also begin texels away from those of the slab before: steep lights move by several.
     reach += min(widest, math.ceil(max((m.mean for m in moments), default=0.0) * stack.step / texel))
-    centers, half = blocks_along(stack.view, frame, material)
+    # Whatever casts, all that is seen has to be reached.
+    blocks = [*casters.blocks, blocks_along(stack.view, frame, material)]
     lamps = []
     for (tilt, rotation), aperture, m, stencil, every in zip(
         angles, apertures, moments, stencils, rhythm, strict=True
     ):
         lattice = Lattice.over(stack, texel, m.mean, rotation, tilt > 90, frame.lattice_jitter, reach)
-        tiles = list_tiles(lattice, [(centers, half)], max(m.along, m.across) * area, near_slabs(frame))
+        tiles = list_tiles(lattice, blocks, max(m.along, m.across) * area, near_slabs(frame))
         lamps.append(Lamp(lattice, stencil, effective_secant(tilt, aperture), tiles, every))
     return tuple(lamps)
 
@@ -126,24 +129,32 @@ def _stencil(along: float, across: float, rotation: float) -> Stencil:
 
 
 class Sweeper:
-    """Carries one light's occlusion from slab to slab, through two states that take turns."""
+    """Carries one light's occlusion from slab to slab, through two states that take turns.
 
-    def __init__(self, device: Device) -> None:
+    Parameters
+    ----------
+    fills : bool
+        Whether layers are written where nothing stands too, for surfaces that ask there.
+    """
+
+    def __init__(self, device: Device, *, fills: bool = False) -> None:
         self.device = device
+        self.fills = fills
         self._programs = Variants(device, "techniques/sweep.frag.glsl", "shaders/tiles.vert.glsl")
         self._targets: list[LayerTarget] = []
         self._pairs: list[tuple[Program, Program]] = []
         self._tiles = TileTexture(device)
         self._clear = 1.0
 
-    def prepare(self, frame: Frame, material: Material, lamp: Lamp) -> None:
+    def prepare(self, frame: Frame, material: Material, lamp: Lamp, casters: Casters = VOLUME_ALONE) -> None:
         """Begin with a light, where no slab has taken any of it yet."""
         form = FORMS[frame.params.occlusion]
         size = lamp.lattice.size
         if not self._targets or self._targets[0].state.size != size:
             self._release_targets()
             self._targets = [LayerTarget(self.device, new_state(self.device, size)) for _ in range(2)]
-        self._lamp = lamp
+        self._lamp, self._casters = lamp, casters
+        covered = casters.cover is not None
         self._clear = 0.0 if form == FORMS["additive"] else 1.0
         self._to_texture = texture_from_view(frame, lamp.lattice.stack)
         self._tiles.upload(lamp.tiles)
@@ -152,11 +163,14 @@ class Sweeper:
         self._farthest = border - int(np.abs(taps).max())
         self._pairs = []
         for filtering in (0, 1):
-            hollow = self._programs.get((("LITERAL", form), ("HOLLOW", 1), ("FILTER", filtering)))
-            full = self._programs.get(
-                (("LITERAL", form), ("HOLLOW", 0), ("FILTER", filtering), *material_defines(material))
-            )
+            kind = (("LITERAL", form), ("FILTER", filtering), ("SHEARED", 1))
+            hollow = self._programs.get((*kind, ("HOLLOW", 1), ("VOLUME", 0), ("GEOMETRY", 0)))
+            casting = (("HOLLOW", 0), ("VOLUME", int(casters.volume)), ("GEOMETRY", int(covered)))
+            full = self._programs.get((*kind, *casting, *material_defines(material)))
             bind_material(full, material, frame)
+            if covered:
+                full.bind(u_cover=casters.cover)
+                full.set(u_opacity=casters.opacity, u_cover_extent=size)
             self._pairs.append((hollow, full))
         for program in (program for pair in self._pairs for program in pair):
             program.set(
@@ -189,13 +203,17 @@ class Sweeper:
         # Where no tile is drawn nothing stands in the light.
         target.plain.clear(self._clear, -1.0)
         full, hollow = self._lamp.tiles.of_slab(index)
-        if full[1] + hollow[1] == 0:
+        if full[1] + hollow[1] == 0 and not self.fills:
             return
         target.use(layers, layer)
+        if self.fills:
+            target.clear_layer(1.0)
         base = lattice.base(enter)
         # What lies farther away than the border is clear in any case.
         shift = tuple(np.clip(base - lattice.base(before), -self._farthest, self._farthest).tolist())
         pair = self._pairs[int(index % self._lamp.every == 0)]
+        if self._casters.cover is not None:
+            pair[1].set(**self._cover_uniforms(index, enter, base))
         for program, (first, count) in zip(pair, (hollow, full), strict=True):
             if count == 0:
                 continue
@@ -207,6 +225,15 @@ class Sweeper:
                     u_leave=affine(self._to_texture, lattice.positions(leave, base)),
                 )
             program.draw_rects(count)
+
+    def _cover_uniforms(self, index: int, enter: int, base: np.ndarray) -> dict[str, Any]:
+        """Return where the coverage of this slab lies, and of the two that light met before."""
+        lattice, back = self._lamp.lattice, 1 if self._lamp.lattice.rear else -1
+        shifts = np.array([base - lattice.base(enter + back * k) for k in range(3)], dtype=np.int32)
+        corners = cover_corners(
+            index, self._casters.columns, lattice.size, back=back, slabs=lattice.stack.count
+        )
+        return {"u_cover_at": corners, "u_cover_shift": np.clip(shifts, -(1 << 14), 1 << 14)}
 
     def release(self) -> None:
         """Free programs and states."""

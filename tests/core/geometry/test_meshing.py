@@ -5,10 +5,11 @@ import json
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import sfumato
 from sfumato import Geometry, Lines, Roi, Scene, SceneError, Surface
-from sfumato.geometry import mesh_of
+from sfumato.geometry import mesh_of, meshing
 from sfumato.geometry.polyline import Strand, smoothed
 from sfumato.geometry.tubes import frames_of, tangents_of
 
@@ -145,6 +146,54 @@ def test_random_part_is_repeatable_and_grows() -> None:
     few, more = (mesh_of(Geometry(lines, sides=3, radius=0.1, fraction=f)) for f in (0.25, 0.5))
     assert 0.15 * 400 * 8 < len(few.triangles) < 0.35 * 400 * 8
     assert set(few.points[:, 1]) < set(more.points[:, 1])
+
+
+def wavy(count: int, points: int, seed: int) -> Lines:
+    rng = np.random.default_rng(seed)
+    steps = np.cumsum(rng.normal(0, 0.3, (count, points, 3)) + np.array([1, 0, 0]), axis=1)
+    return Lines.of([line + 40 * rng.random(3) for line in steps])
+
+
+@pytest.mark.parametrize(("count", "budget"), [(100, 10_000), (600, 10_000), (100, 100_000)])
+def test_the_budget_of_triangles_holds(count: int, budget: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """First fewer sides, then fewer points within 4 radii of the lines, then fewer lines, evenly."""
+    monkeypatch.setattr(meshing, "BUDGET_TRIANGLES", budget)
+    monkeypatch.setattr(meshing, "MOVING_TRIANGLES", budget // 4)
+    geometry = Geometry(wavy(count, 60, budget), radius=0.2)
+    mesh = mesh_of(geometry)
+    assert budget / 4 < len(mesh.triangles) <= 1.05 * budget
+    assert mesh.coarse is not None
+    assert len(mesh.coarse.triangles) <= 1.1 * budget // 4
+    assert mesh.coarse.shown <= mesh.shown <= count
+    assert mesh.axes is not None
+    ends = cKDTree(
+        np.concatenate(
+            [
+                np.linspace(a, b, 8)
+                for a, b in zip(geometry.shape.points, geometry.shape.points[1:], strict=False)
+            ]
+        )
+    )
+    assert ends.query(mesh.axes[:, :3])[0].max() < 4 * 0.2
+
+
+def test_a_fine_surface_has_a_coarse_one_of_the_same_size_and_shape(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(meshing, "MOVING_TRIANGLES", 2000)
+    x, y = np.meshgrid(np.linspace(0, 10, 80), np.linspace(0, 10, 80))
+    points = np.stack([x, y, np.sin(x)], axis=-1).reshape(-1, 3)
+    a = (np.arange(79)[:, None] * 80 + np.arange(79)).ravel()
+    triangles = np.concatenate([np.stack([a, a + 1, a + 80], 1), np.stack([a + 1, a + 81, a + 80], 1)])
+    mesh = mesh_of(Geometry(Surface(points, triangles)))
+    coarse = mesh.coarse
+    assert coarse is not None
+    assert 500 < len(coarse.triangles) < 4000
+
+    def area(m: sfumato.Mesh) -> float:
+        p = faces(m)
+        return float(np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1).sum() / 2)
+
+    assert area(coarse) == pytest.approx(area(mesh), rel=0.1)
+    assert coarse.bounds == pytest.approx(mesh.bounds, abs=0.3)
 
 
 def test_mesh_is_kept_and_read_only() -> None:

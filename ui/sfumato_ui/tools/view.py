@@ -100,7 +100,11 @@ class PictureView:
 
     def depth(self, point: np.ndarray) -> float:
         """Return how far before the eye a world point lies, in mm along the view."""
-        return float(self._axes[2] @ (point - self._eye))
+        return float(self.depths(np.asarray(point)[None])[0])
+
+    def depths(self, points: np.ndarray) -> np.ndarray:
+        """Return how far before the eye world points (n, 3) lie, in mm along the view."""
+        return np.asarray((np.asarray(points, dtype=float) - self._eye) @ self._axes[2])
 
     def fractions(self, place: Place) -> Place:
         """Return a place in half widths and half heights from the centre, y up."""

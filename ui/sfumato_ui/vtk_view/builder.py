@@ -1,4 +1,4 @@
-"""Poly data for the VTK view, built away from the window's thread: the last wish for each place counts."""
+"""What the VTK view shows, built away from the window's thread: the last wish for each place counts."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any
 from qtpy.QtCore import QObject, Signal
 
 from sfumato import Geometry
-from sfumato.geometry.preview import poly_of
+from sfumato.geometry.preview import preview_of
 
 from ..wording import one_line
 
 
-class PolyBuilder(QObject):
+class PreviewBuilder(QObject):
     """Builds what was wished for last, one after the other; its thread lives while there is work."""
 
-    #: Built: place in the scene, geometry, (vtkPolyData, numbers of its cells).
+    #: Built: place in the scene, geometry, `Preview`.
     built = Signal(int, object, object)
     #: Why a geometry cannot be shown.
     failed = Signal(str)
@@ -35,7 +35,7 @@ class PolyBuilder(QObject):
             return self._running
 
     def want(self, index: int, geometry: Geometry) -> None:
-        """Ask for the poly data of a geometry."""
+        """Ask for what is shown of a geometry."""
         with self._lock:
             self._wanted[index] = geometry
             if self._running:
@@ -54,7 +54,7 @@ class PolyBuilder(QObject):
             index, geometry = wish
             made: Any
             try:
-                made = poly_of(geometry)
+                made = preview_of(geometry)
             except Exception as error:  # a colour map that is not known, no memory: the view says so
                 self._tell(self.failed, one_line(error))
                 continue

@@ -117,6 +117,9 @@ class VtkPanel(QFrame):
             row.setSpacing(4)
             for widget in widgets:
                 row.addWidget(widget, int(widget in (self.tool, self.told)))
+        # The row keeps its height whatever it shows: else the view would jump under the hand at the first pick.
+        tallest = max(w.sizeHint().height() for w in (self.count, self.radius, self.keep, self.all_lines))
+        below.addStrut(tallest)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(4)

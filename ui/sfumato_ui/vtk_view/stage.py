@@ -1,4 +1,4 @@
-"""What VTK shows: the geometry as lines and surfaces, the volume's box, and a camera linked both ways."""
+"""VTK's view of the scene: its shapes, a camera linked both ways, and what a click meets."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from qtpy.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from qtpy.QtGui import QMouseEvent
 from qtpy.QtWidgets import QWidget
 
-from sfumato import Geometry, Lines, Scene
-from sfumato.geometry import kept_lines
+from sfumato import Scene
 from sfumato.geometry.preview import line_poly
 
 from ..editing import Editor
 from ..subject import bounds_of, size_of
 from ..theme import PICTURE_GREY
-from .builder import PolyBuilder
+from ..tools.view import PictureView
 from .link import camera_of, same_view, show_camera
+from .picking import Found, line_under, under_pointer
+from .screen import VtkScreen
+from .shapes import ShownShapes
 
 #: A click is a press and a release within so many pixels.
 CLICK_PIXELS = 4
-#: How near a click must come to a line, as a part of the view's diagonal.
-PICK_TOLERANCE = 0.008
 #: What a move of VTK's camera is called in the history.
 MOVE = "Move the camera"
 #: Colour of the line that is picked, sRGB.
@@ -42,7 +42,7 @@ class Pick:
     line : int
         Number of the line.
     point : (x, y, z)
-        Where, world mm.
+        Where on it, world mm.
     """
 
     geometry: int
@@ -66,38 +66,25 @@ class VtkStage(QObject):
 
     #: A line was picked (`Pick`), or a click met nothing (None).
     picked = Signal(object)
-    #: A click, wherever: the point on what it met, or at the depth of the camera's focus (x, y, z in mm).
+    #: A click, wherever: the point under it on what it met, or at the depth of the camera's focus (x, y, z in mm).
     clicked = Signal(object)
     #: Not all lines are shown, or all again (a sentence, or nothing).
     thinned = Signal(str)
 
     def __init__(self, editor: Editor, parent: QWidget) -> None:
         super().__init__(parent)
-        from pyvistaqt import QtInteractor
-
         self._editor = editor
         self._following = False
         self._pressed: QPointF | None = None
-        #: By place in the scene: geometry, its actor (None if nothing of it is left), what its cells are.
-        self._actors: dict[int, tuple[Geometry, Any, np.ndarray]] = {}
-        self._builder = PolyBuilder(self)
-        self._builder.built.connect(self._on_built)
-        self._builder.failed.connect(self.thinned)
-        self._box: Any = None
         self._mark: Any = None
         self._dots: Any = None
-        make: Any = QtInteractor
-        self.view: Any = make(parent, auto_update=False)
-        # pyvista's own keys (q, e, w, …) would close or change the view behind the document's back.
-        self.view.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.screen = VtkScreen(parent, self._before_paint)
+        self.view: Any = self.screen.view
         self.view.set_background([c / 255 for c in _rgb(PICTURE_GREY)])
-        self.view.enable_trackball_style()
+        self.shapes = ShownShapes(self.screen, editor)
+        self.shapes.thinned.connect(self.thinned)
         self.view.installEventFilter(self)
         self._listen()
-        self._redraw = QTimer(self)
-        self._redraw.setSingleShot(True)
-        self._redraw.setInterval(0)
-        self._redraw.timeout.connect(self._render)
         self._after = QTimer(self)
         self._after.setSingleShot(True)
         self._after.setInterval(0)
@@ -106,7 +93,7 @@ class VtkStage(QObject):
         self.show_scene(editor.scene)
 
     def _listen(self) -> None:
-        style = self.view.iren.interactor.GetInteractorStyle()
+        style = self.screen.interactor.GetInteractorStyle()
         style.AddObserver("StartInteractionEvent", lambda *_: self._editor.begin(MOVE))
         style.AddObserver("InteractionEvent", lambda *_: self._after.start())
         style.AddObserver("EndInteractionEvent", lambda *_: self._end_move())
@@ -114,11 +101,10 @@ class VtkStage(QObject):
     def close(self) -> None:
         """Give VTK's context back, on this thread, while the widget is still there."""
         self._editor.changed.disconnect(self._on_changed)
-        self._builder.close()
-        self._redraw.stop()
+        self.shapes.close()
         self._after.stop()
         self.view.removeEventFilter(self)
-        self.view.close()
+        self.screen.close()
 
     # -- the scene --------------------------------------------------------------------------------
     def _on_changed(self, old: Scene, new: Scene) -> None:
@@ -126,85 +112,18 @@ class VtkStage(QObject):
             self.show_scene(new)
         elif old.camera != new.camera:
             self._follow_ours()
+            self.screen.move()
 
     def show_scene(self, scene: Scene) -> None:
         """Show the scene's geometry, the box of its volume and what its camera sees."""
-        for index in [i for i in self._actors if i >= len(scene.geometry)]:
-            self._remove(self._actors.pop(index)[1])
-        for index, geometry in enumerate(scene.geometry):
-            self._show_geometry(index, geometry)
-        self._show_box(scene)
+        self.shapes.show_scene(scene)
         self.mark(None)
         self._follow_ours()
 
     @property
     def busy(self) -> bool:
         """Whether some of the scene's geometry is still being built."""
-        shown = self._editor.scene.geometry
-        known = [self._actors.get(i) for i in range(len(shown))]
-        keys = zip(known, shown, strict=True)
-        return any(k is None or k[0].mesh_key != g.mesh_key for k, g in keys)
-
-    def _show_geometry(self, index: int, geometry: Geometry) -> None:
-        known = self._actors.get(index)
-        if known is not None and known[0].mesh_key == geometry.mesh_key:
-            if known[1] is not None:
-                known[1].SetVisibility(geometry.visible)
-            return
-        self._builder.want(index, geometry)
-
-    def _on_built(self, index: int, geometry: Geometry, made: tuple[Any, np.ndarray]) -> None:
-        """Put what was built in the place of what was there, if the scene still wants it."""
-        wanted = self._editor.scene.geometry
-        if index >= len(wanted) or wanted[index].mesh_key != geometry.mesh_key:
-            return
-        known = self._actors.get(index)
-        if known is not None:
-            self._remove(known[1])
-        poly, numbers = made
-        self._actors[index] = (geometry, self._actor(wanted[index], poly), numbers)
-        self.redraw()
-        self.thinned.emit(self._thinned_text())
-
-    def _thinned_text(self) -> str:
-        """Tell how many of the lines are shown here, if not all."""
-        lines = [(g, n) for g, _, n in self._actors.values() if isinstance(g.shape, Lines)]
-        shown, kept = sum(len(n) for _, n in lines), sum(int(kept_lines(g).sum()) for g, _ in lines)
-        return f"{shown:,} of {kept:,} lines are shown here".replace(",", " ") if shown < kept else ""
-
-    def _actor(self, geometry: Geometry, poly: Any) -> Any:
-        """Return what shows poly data; nothing where the filters leave nothing."""
-        if not poly.GetNumberOfPoints():
-            return None
-        import pyvista
-
-        actor = self.view.add_mesh(
-            pyvista.wrap(poly), rgb=True, line_width=1.5, lighting=not isinstance(geometry.shape, Lines),
-            reset_camera=False, render=False, show_scalar_bar=False, pickable=True,
-        )  # fmt: skip
-        actor.SetVisibility(geometry.visible)
-        return actor
-
-    def _remove(self, actor: Any) -> None:
-        if actor is not None:
-            self.view.remove_actor(actor, render=False)
-
-    def _show_box(self, scene: Scene) -> None:
-        if self._box is not None:
-            self.view.remove_actor(self._box, render=False)
-            self._box = None
-        corners = scene.volume.corners() if scene.volume is not None else None
-        if corners is None:
-            return
-        # Corner i has the bits (x, y, z) of its place: edges join those that differ in one.
-        edges = [(i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit]
-        import pyvista
-
-        box = pyvista.PolyData(corners, lines=np.ravel([(2, a, b) for a, b in edges]))
-        self._box = self.view.add_mesh(
-            box, color="white", opacity=0.5, line_width=1, lighting=False,
-            reset_camera=False, render=False, pickable=False,
-        )  # fmt: skip
+        return self.shapes.busy
 
     def mark(self, pick: Pick | None) -> None:
         """Show which line is picked."""
@@ -216,20 +135,16 @@ class VtkStage(QObject):
 
             line = pyvista.wrap(line_poly(self._editor.scene.geometry[pick.geometry], pick.line))
             self._mark = self.view.add_mesh(
-                line,
-                color=PICKED,
-                line_width=5,
-                lighting=False,
-                reset_camera=False,
-                render=False,
-                pickable=False,
-            )
+                line, color=PICKED, line_width=5, lighting=False,
+                reset_camera=False, render=False, pickable=False,
+            )  # fmt: skip
         self.redraw()
 
     def show_points(self, places: tuple[tuple[float, float, float], ...]) -> None:
         """Show single seeds."""
-        self._remove(self._dots)
-        self._dots = None
+        if self._dots is not None:
+            self.view.remove_actor(self._dots, render=False)
+            self._dots = None
         if places:
             import pyvista
 
@@ -262,16 +177,16 @@ class VtkStage(QObject):
 
     def redraw(self) -> None:
         """Draw soon, once for all that changed."""
-        self._redraw.start()
+        self.screen.redraw()
 
-    def _render(self) -> None:
+    def _before_paint(self) -> None:
+        """Let VTK's near and far planes enclose all that is shown."""
         corners = bounds_of(self._editor.scene)
         if corners is not None:
             low, high = corners.min(axis=0), corners.max(axis=0)
             margin = 0.05 * size_of(self._editor.scene)
             box = np.stack([low - margin, high + margin], axis=1).ravel()
             self.view.renderer.ResetCameraClippingRange(*map(float, box))
-        self.view.render()
 
     # -- picking ----------------------------------------------------------------------------------
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -289,26 +204,48 @@ class VtkStage(QObject):
 
     def pick(self, at: QPointF) -> None:
         """Pick the line under a place of the widget, and tell of it."""
+        camera = self._editor.scene.camera
+        if camera is None:
+            return
+        view, place = PictureView(camera, self.view.width(), self.view.height()), (at.x(), at.y())
+        hit = self._surface_depth(view, at)
+        made, found = self._line_under(view, place, np.inf if hit is None else hit)
+        depth = found.depth if found is not None else camera.distance if hit is None else hit
+        self.mark(made)
+        self.picked.emit(made)
+        self.clicked.emit(under_pointer(view, place, depth))
+
+    def _line_under(
+        self, view: PictureView, place: tuple[float, float], before: float
+    ) -> tuple[Pick | None, Found | None]:
+        """Return the line under a place, before a depth."""
+        best: tuple[Pick | None, Found | None] = (None, None)
+        for index, points, offsets, numbers in self.shapes.lines():
+            found = line_under(view, place, points, offsets, before)
+            if found is not None and (best[1] is None or found.away < best[1].away):
+                x, y, z = map(float, found.point)
+                best = Pick(index, int(numbers[found.cell]), (x, y, z)), found
+        return best
+
+    def _surface_depth(self, view: PictureView, at: QPointF) -> float | None:
+        """Return how far before the eye, in mm, the surface under a place of the widget lies, if there is one."""
+        surfaces = self.shapes.surfaces()
+        if not surfaces:
+            return None
         from vtkmodules.vtkRenderingCore import vtkCellPicker
 
         picker = vtkCellPicker()
-        picker.SetTolerance(PICK_TOLERANCE)
+        picker.SetTolerance(0)
+        picker.PickFromListOn()
+        for actor in surfaces:
+            picker.AddPickList(actor)
         ratio = self.view.devicePixelRatioF()
-        x, y = at.x() * ratio, (self.view.height() - 1 - at.y()) * ratio
-        picker.Pick(x, y, 0, self.view.renderer)
-        found = self._of_actor(picker.GetActor(), picker.GetCellId())
-        made = None if found is None else Pick(*found, tuple(float(v) for v in picker.GetPickPosition()))  # type: ignore[arg-type]
-        self.mark(made)
-        self.picked.emit(made)
-        self.clicked.emit(tuple(float(v) for v in picker.GetPickPosition()))
-
-    def _of_actor(self, actor: Any, cell: int) -> tuple[int, int] | None:
-        for index, (geometry, own, numbers) in self._actors.items():
-            scene = self._editor.scene.geometry
-            current = index < len(scene) and scene[index].shape is geometry.shape
-            if own is actor and current and 0 <= cell < len(numbers) and isinstance(geometry.shape, Lines):
-                return index, int(numbers[cell])
-        return None
+        x, y = at.x() * ratio, (self.view.height() - at.y()) * ratio
+        return (
+            view.depth(np.array(picker.GetPickPosition()))
+            if picker.Pick(x, y, 0, self.view.renderer)
+            else None
+        )
 
 
 def _rgb(color: str) -> tuple[int, int, int]:

@@ -1,13 +1,20 @@
 // Surfaces shaded, and the volume over them (Schott2012, Alg. 6).
 //
 // LIGHTS     number of lamps
-// NEAR       samples on the way to where a lamp's texture is asked
+// SLICED     0: light from lamps' textures, 1: from the view's slices
+// NEAR       samples on the way to where a lamp's texture is asked; slabs, if it is sliced
 #include "ray"
 #include "volume"
 #include "clip"
 #include "transfer"
 #define SURFACES 1
+#if SLICED
+uniform int u_rear[4];               // 1: behind the subject, its light enters a slab at the back
+uniform float u_z0, u_step;          // depth of plane 0, distance of planes; mm
+#include "occlusion"
+#else
 #include "light_volume"
+#endif
 
 uniform vec3 u_light_color[4];       // linear RGB times intensity
 uniform vec3 u_towards[4];           // unit vector to the lamp, world
@@ -21,19 +28,38 @@ uniform float u_unshadowed;          // 1: all light arrives, nothing is in its 
 uniform float u_surface_ambient, u_surface_diffuse, u_surface_specular, u_surface_shininess;
 uniform float u_vicinity;            // strength
 uniform float u_lift[4];             // mm: texel of each lamp's light volume
+uniform float u_lift_share[4];       // the same as a part of the way to where a lamp's light is asked for
 uniform int u_show;                  // 0: the picture, 1: occlusion, 2: partial occlusion alone, 3: vicinity occlusion alone
 #include "vicinity"
 
 layout(location = 0) out vec4 o_color;
 
 // Light that the sweep says arrives at a surface point (the paper's partial occlusion).
+#if SLICED
+#define PARTIAL(l) partial(l, p, normal)
+float partial(int l, vec3 p, vec3 normal) {
+#else
 #define PARTIAL(l) partial(l, u_light##l, p, normal)
 float partial(int l, sampler3D light, vec3 p, vec3 normal) {
+#endif
     float cosine = dot(normal, u_towards[l]);
     // Off the texels that the surface itself covers; the more, the more the lamp grazes it.
-    vec3 lifted = p + normal * (u_lift[l] * (0.5 + 1.5 * sqrt(max(1.0 - cosine * cosine, 0.0))));
+    float texels = 0.5 + 1.5 * sqrt(max(1.0 - cosine * cosine, 0.0));
+    vec3 lifted = p + normal * (u_lift[l] * texels);
+    // The way that is looked through is as much longer as the surface point was lifted towards the lamp.
+    float longer = 1.0 + u_lift_share[l] * texels * max(cosine, 0.0);
+#if SLICED
+    vec3 from_eye = lifted - u_eye, t = (u_texture_from_world * vec4(p, 1.0)).xyz;
+    vec3 at = vec3(dot(from_eye, u_right), dot(from_eye, u_up), dot(from_eye, u_forward)) + float(NEAR) * u_to_light_view[l];
+#if NEAR > 0
+    return pow(near_field(l, t, volume_value(t)), longer) * partial_occlusion(l, at);
+#else
+    return partial_occlusion(l, at);
+#endif
+#else
     vec3 t = (u_texture_from_world * vec4(p, 1.0)).xyz, t_lifted = (u_texture_from_world * vec4(lifted, 1.0)).xyz;
-    return near_field(l, t, volume_value(t)) * light_at(light, asked_at(l, t_lifted));
+    return pow(near_field(l, t, volume_value(t)), longer) * light_at(light, asked_at(l, t_lifted));
+#endif
 }
 
 vec3 surface_color(vec3 p, vec3 view, vec3 normal, vec3 color, float z) {

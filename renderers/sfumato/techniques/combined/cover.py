@@ -79,6 +79,8 @@ class CoverMaker:
     ) -> Iterator[float]:
         """Draw casters, yielding after each bounded piece."""
         program = self._programs.get(())
+        # What a texel of a plane lets through of slanting light is narrower than the texel.
+        texel_area = lattice.texel**2 * abs(float(towards @ lattice.stack.view.axes[2]))
         fbo = self.device.ctx.framebuffer([texture])
         fbo.clear()
         try:
@@ -87,7 +89,7 @@ class CoverMaker:
                     u_lattice_from_world=_matrix(lattice, surfels.middle), u_towards=tuple(towards.tolist()),
                     u_closed=surfels.closed, u_lattice_size=tuple(map(float, atlas.size)), u_slabs=float(atlas.slabs),
                     u_columns=atlas.columns, u_picture=tuple(map(float, atlas.picture)),
-                    u_texel_area=lattice.texel**2, u_shear=lattice.shear, u_rear=int(lattice.rear),
+                    u_texel_area=texel_area, u_shear=lattice.shear, u_rear=int(lattice.rear),
                 )  # fmt: skip
                 for first in range(0, surfels.count, PIECE):
                     self._draw(fbo, surfels, first, min(PIECE, surfels.count - first))

@@ -24,7 +24,8 @@ void main() {
     vec3 at = (u_lattice_from_world * vec4(a_p, 1.0)).xyz;
     float slab = floor(at.z);
     ivec2 moved = u_shear * (int(slab) + u_rear);
-    at.xy += vec2(moved & 32767) / 32768.0;
+    // Columns move on within the slab too.
+    at.xy += vec2(moved & 32767) / 32768.0 + vec2(u_shear) / 32768.0 * (at.z - slab - float(u_rear));
     vec3 l = u_towards;
     float squared = dot(a_diagonal, l * l) + 2.0 * (a_mixed.x * l.x * l.y + a_mixed.y * l.x * l.z + a_mixed.z * l.y * l.z);
     float both = sqrt(max(squared, 0.0) * (a_diagonal.x + a_diagonal.y + a_diagonal.z));

@@ -11,9 +11,10 @@ import numpy as np
 
 from ...gpu import Device
 from ...scene.vectors import box_corners
+from ..casters import Casters
 from ..frame import Frame
 from ..light_cache import LightCache
-from ..light_volume import Casters, LightGrid, LightSweeper, grid_for
+from ..light_volume import LightGrid, LightSweeper, grid_for
 from .cover import BYTES_PER_TEXEL, Atlas, CoverMaker
 from .meshes import MeshBuffers, Shown
 from .surfels import cell_of, cut_key, make_surfels
@@ -90,7 +91,7 @@ class LampMaker:
         lamps: list[Lit] = []
         lights = frame.scene.active_lights
         casting = stage.shown if geometry and frame.params.geometry_opacity > 0 else ()
-        more = (volume, _key(frame, casting))
+        more = (volume, geometry_key(frame, casting))
         for light, angle in zip(lights, stage.angles, strict=True):
             grid = grid_for(frame, stage.material, angle, light.aperture, stage.corners, more)
             atlas = Atlas.of(self.device, grid.lattice)
@@ -125,7 +126,7 @@ class LampMaker:
         self.cache.release()
 
 
-def _key(frame: Frame, casting: tuple[Shown, ...]) -> Hashable:
+def geometry_key(frame: Frame, casting: tuple[Shown, ...]) -> Hashable:
     """Return what geometry's shadows depend on besides the lamp."""
     if not casting:
         return None
@@ -133,4 +134,4 @@ def _key(frame: Frame, casting: tuple[Shown, ...]) -> Hashable:
     return keys, frame.params.geometry_opacity, cell_of(frame)
 
 
-__all__ = ["LampMaker", "Lit", "Textures", "corners_of"]
+__all__ = ["LampMaker", "Lit", "Textures", "corners_of", "geometry_key"]

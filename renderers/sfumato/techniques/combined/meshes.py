@@ -55,13 +55,23 @@ class Shown:
 
     Attributes
     ----------
+    mesh : Mesh
+        What casts shadows.
     clipped : bool
         Whether clip planes or a crop box cut it.
+    rough : bool
+        Whether its coarse mesh is drawn, since something moves.
     """
 
     geometry: Geometry
     mesh: Mesh
     clipped: bool
+    rough: bool = False
+
+    @property
+    def drawn(self) -> Mesh:
+        """The mesh that is drawn."""
+        return self.mesh.coarse if self.rough and self.mesh.coarse is not None else self.mesh
 
     @property
     def key(self) -> Hashable:
@@ -74,13 +84,24 @@ class Shown:
         return isinstance(self.geometry.shape, Lines)
 
 
-def shown_geometry(scene: Scene) -> tuple[Shown, ...]:
-    """Return what is to be drawn of a scene's geometry, with its meshes; what has no triangle is left out."""
-    from ...geometry import mesh_of
+def shown_geometry(frame: Frame) -> Generator[float, None, tuple[Shown, ...]]:
+    """Return what is to be drawn of a scene's geometry, with its meshes; what has no triangle is left out.
 
+    Meshes that nobody has built yet are built here, in pieces.
+    """
+    from ...geometry import build, known_mesh
+
+    scene, shown = frame.scene, []
     cuts = any(plane.enabled for plane in scene.clip) or not _whole(scene)
-    found = ((g, mesh_of(g)) for g in scene.geometry if g.visible)
-    return tuple(Shown(g, mesh, cuts and g.clipped) for g, mesh in found if len(mesh.triangles))
+    for geometry in scene.geometry:
+        if not geometry.visible:
+            continue
+        mesh = known_mesh(geometry)
+        if mesh is None:
+            mesh = yield from build(geometry)
+        if len(mesh.triangles):
+            shown.append(Shown(geometry, mesh, cuts and geometry.clipped, frame.quality.rough))
+    return tuple(shown)
 
 
 def _whole(scene: Scene) -> bool:
@@ -93,12 +114,12 @@ def upload_meshes(frame: Frame, shown: tuple[Shown, ...]) -> Generator[float, No
     """Return the buffers of what is drawn, uploading what is not there yet."""
     store, device, buffers = frame.device.store, frame.device, []
     for item in shown:
-        key = ("geometry", item.geometry.mesh_key)
+        key = ("geometry", item.geometry.mesh_key, item.drawn is item.mesh)
         packed = {}
         if not store.holds(key):
-            packed["data"] = yield from _pack(item.mesh)
+            packed["data"] = yield from _pack(item.drawn)
         buffers.append(
-            store.get(key, lambda m=item.mesh, p=packed: _upload(device, m, p["data"]), lambda b: b.size)  # type: ignore[misc]
+            store.get(key, lambda m=item.drawn, p=packed: _upload(device, m, p["data"]), lambda b: b.size)  # type: ignore[misc]
         )
     return tuple(buffers)
 

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from ...scene.params import Param
-from ..multidirectional.params import ShadowParams
+from ..multidirectional.params import OcclusionParams
 
 #: What `show` may be.
 TERMS = ("picture", "geometry", "volume", "occlusion", "partial", "vicinity")
+#: What `light` may be.
+LIGHTS = ("cone", "multidirectional")
 _FIGURE_2 = "Schott2012, Fig. 2"
 
 
@@ -18,9 +20,22 @@ def _cast(meaning: str, label: str) -> Any:
 
 
 @dataclass(frozen=True)
-class CombinedParams(ShadowParams):
+class CombinedParams(OcclusionParams):
     """How volume and geometry shade each other, and what surfaces look like."""
 
+    light: Annotated[
+        str,
+        Param(
+            "How light is carried: cone-accurate, each lamp by itself, or blurred from slice to slice of the view, as "
+            "published; occlusion and fall-off are the latter's",
+            label="Light by",
+            choices=LIGHTS,
+            source="Schott2012, Alg. 1; Soltesova2010",
+            stale="program",
+            tab="light",
+            level="more",
+        ),
+    ] = "cone"
     geometry_opacity: Annotated[
         float,
         Param(

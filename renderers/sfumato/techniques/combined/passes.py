@@ -15,6 +15,7 @@ from ..frame import Frame
 from ..lamp_shadows import Lamps, bind_lamps
 from ..marcher import (
     PIECE_PIXELS,
+    SWEPT,
     VOLUMES,
     Angles,
     Marcher,
@@ -38,6 +39,7 @@ from ..stack import Stack, View
 from .disc import turned_disc
 from .lamps import LampMaker, Lit, corners_of
 from .meshes import MeshBuffers, Shown, shown_geometry, upload_meshes
+from .slices import Sliced, SliceMaker, bind_slices, lamp_axes
 from .stand_in import with_volume
 from .surfaces import SurfacePainter, depth_range
 
@@ -69,12 +71,13 @@ class CombinedPainter:
         self.marcher = Marcher(device)
         self.surfaces = SurfacePainter(device)
         self.lamps = LampMaker(device)
+        self.slices = SliceMaker(device)
         self._slab_term = SlabTexture(device)
         self._compose = Variants(device, "techniques/combined/compose.frag.glsl")
 
     def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
-        shown = shown_geometry(frame.scene)
+        shown = yield from shown_geometry(frame)
         frame = with_volume(frame, _bounds(shown))
         stage = yield from self._stage(frame, shown)
         if stage is None:
@@ -82,6 +85,9 @@ class CombinedPainter:
             yield 1.0
             return
         params = frame.params
+        if params.light != "cone":
+            frame = self.slices.fitting(frame, stage)
+        maker = self.lamps if params.light == "cone" else self.slices
         on_volume = (params.volume_on_volume, params.geometry_on_volume)
         on_surfaces = (params.volume_on_geometry, params.geometry_on_geometry)
         self.marcher.begin(frame)
@@ -92,12 +98,12 @@ class CombinedPainter:
             for _ in self.surfaces.draw(frame, stage.shown, stage.meshes, margin):
                 yield 0.02
         if not is_empty(stage.box):
-            lamps = yield from self.lamps.lit(frame, stage, *on_volume)
+            lamps = yield from maker.lit(frame, stage, *on_volume)
             program = self._march_program(frame, stage, lamps, surfaces, margin)
             for done in self.marcher.march(frame, program, (0, 1 << 24), stage.box, True):
                 yield 0.5 + 0.4 * done
         if surfaces:
-            lamps = yield from self.lamps.lit(frame, stage, *on_surfaces)
+            lamps = yield from maker.lit(frame, stage, *on_surfaces)
             yield from self._put_together(frame, stage, lamps, margin)
         else:
             self.marcher.finish(frame)
@@ -126,41 +132,55 @@ class CombinedPainter:
 
     # -- the volume ---------------------------------------------------------------------------------
     def _march_program(
-        self, frame: Frame, stage: Stage, lamps: list[Lit], surfaces: bool, margin: int
+        self, frame: Frame, stage: Stage, lamps: list[Lit] | Sliced, surfaces: bool, margin: int
     ) -> Program:
         """Set up the ray caster."""
-        params, count = frame.params, len(lamps)
-        ways = _ways(frame, stage, lamps)
-        covered = any(lit.cover is not None for lit in lamps)
+        params, count = frame.params, len(frame.scene.active_lights)
+        if isinstance(lamps, Sliced):
+            covered, shading, near, stack = lamps.covered, SWEPT, lamps.near, lamps.stack
+        else:
+            covered, shading = any(lit.cover is not None for lit in lamps), VOLUMES
+            near = _ways(frame, stage, lamps).samples
+            stack = Stack.through(View.of(frame.camera), crop_corners(frame), frame.step, frame.jitter)
+        literal = isinstance(lamps, Sliced) and params.occlusion != "extinction"
         variant = Variant(
-            True, VOLUMES, count, False, ways.samples, params.specular > 0, surface=surfaces, geometry=covered
+            True, shading, count, literal, near, params.specular > 0, surface=surfaces, geometry=covered
         )
         program = self.marcher.program(variant, stage.material)
         bind_material(program, stage.material, frame)
-        stack = Stack.through(View.of(frame.camera), crop_corners(frame), frame.step, frame.jitter)
         set_view(program, frame, stack)
         program.set(
             u_ambient=params.ambient, u_specular=params.specular, u_shininess=params.shininess, u_margin=margin,
             **light_uniforms(frame, lights_towards(frame)),
         )  # fmt: skip
-        self._bind_lamps(program, frame, stage, lamps, ways)
-        if not params.volume_on_volume:
-            program.set(u_near_length=np.zeros(4, np.float32))
-        if covered:
-            program.set(u_cover_opacity=params.geometry_opacity, **_cover_uniforms(lamps, ways))
-            program.bind(**{f"u_cover{k}": lit.cover for k, lit in enumerate(lamps)})
+        self._bind_light(program, frame, stage, lamps)
         if surfaces and self.surfaces.target is not None:
             program.bind(u_surface=self.surfaces.target.shape)
         apertures = [light.aperture for light in frame.scene.active_lights]
         self._slab_term.bind(program, frame, [tilt for tilt, _ in stage.angles], apertures)
         return program
 
+    def _bind_light(self, program: Program, frame: Frame, stage: Stage, lamps: list[Lit] | Sliced) -> None:
+        """Set where the ray caster finds each lamp's light."""
+        if isinstance(lamps, Sliced):
+            bind_slices(program, frame, lamps, frame.params.volume_on_volume)
+            return
+        ways = _ways(frame, stage, lamps)
+        self._bind_lamps(program, frame, stage, lamps, ways)
+        if not frame.params.volume_on_volume:
+            program.set(u_near_length=np.zeros(4, np.float32))
+        if any(lit.cover is not None for lit in lamps):
+            program.set(u_cover_opacity=frame.params.geometry_opacity, **_cover_uniforms(lamps, ways))
+            program.bind(**{f"u_cover{k}": lit.cover for k, lit in enumerate(lamps)})
+
     def _bind_lamps(self, program: Program, frame: Frame, stage: Stage, lamps: list[Lit], ways: Ways) -> None:
         swept = Lamps(stage.angles, [lit.grid for lit in lamps], [lit.light for lit in lamps], ways)
         bind_lamps(program, frame, swept)
 
     # -- surfaces, and the volume over them ---------------------------------------------------------
-    def _put_together(self, frame: Frame, stage: Stage, lamps: list[Lit], margin: int) -> Iterator[float]:
+    def _put_together(
+        self, frame: Frame, stage: Stage, lamps: list[Lit] | Sliced, margin: int
+    ) -> Iterator[float]:
         """Shade the surfaces into the frame's target, below what the ray caster saw."""
         program = self._compose_program(frame, stage, lamps, margin)
         width, height = frame.size
@@ -173,34 +193,43 @@ class CombinedPainter:
             frame.target.fbo.scissor = (0, 0, width, height)
             yield 0.9 + 0.1 * y / height
 
-    def _compose_program(self, frame: Frame, stage: Stage, lamps: list[Lit], margin: int) -> Program:
+    def _compose_program(self, frame: Frame, stage: Stage, lamps: list[Lit] | Sliced, margin: int) -> Program:
         params, target = frame.params, self.surfaces.target
         assert target is not None
-        ways = _ways(frame, stage, lamps)
+        sliced = isinstance(lamps, Sliced)
+        near = lamps.near if isinstance(lamps, Sliced) else _ways(frame, stage, lamps).samples
         program = self._compose.get(
             (
-                ("LIGHTS", len(lamps)),
-                ("NEAR", ways.samples),
-                ("GEOMETRY", 0),
-                *material_defines(stage.material),
+                ("LIGHTS", len(frame.scene.active_lights)), ("SLICED", int(sliced)), ("NEAR", near),
+                ("GEOMETRY", 0), *material_defines(stage.material),
             )
-        )
+        )  # fmt: skip
         bind_material(program, stage.material, frame)
-        set_view(program, frame, None)
-        self._bind_lamps(program, frame, stage, lamps, ways)
+        set_view(program, frame, lamps.stack if isinstance(lamps, Sliced) else None)
+        if isinstance(lamps, Sliced):
+            bind_slices(program, frame, lamps, params.volume_on_geometry)
+            program.set(**_lift(frame, [lamps.texel] * len(lamps.lamps), lamps.ways))
+        else:
+            ways = _ways(frame, stage, lamps)
+            self._bind_lamps(program, frame, stage, lamps, ways)
+            texels = [lit.grid.lattice.texel for lit in lamps]
+            program.set(**_lift(frame, texels, ways.lengths.tolist()))
+            program.set(u_near_length=_near_length(frame, lamps, ways))
         program.bind(u_over=self.marcher.picture, u_surface=target.shape, u_surface_color=target.color)
         program.set(**light_uniforms(frame, lights_towards(frame)))
         program.set(
             u_margin=margin, u_nothing=0.5 * NOTHING, u_ambient=params.ambient, u_show=_TERMS.get(params.show, 0),
             u_surface_ambient=params.surface_ambient, u_surface_diffuse=params.surface_diffuse,
             u_surface_specular=params.surface_specular, u_surface_shininess=params.surface_shininess,
-            **_surface_light(frame, lamps, ways), **_vicinity(frame, lamps),
+            **_vicinity(frame, stage),
         )  # fmt: skip
         return program
 
     def release(self) -> None:
         """Free the GPU objects."""
-        parts: tuple[Any, ...] = (self.marcher, self.surfaces, self.lamps, self._slab_term, self._compose)
+        parts: tuple[Any, ...] = (
+            self.marcher, self.surfaces, self.lamps, self.slices, self._slab_term, self._compose,
+        )  # fmt: skip
         for part in parts:
             part.release()
 
@@ -223,27 +252,34 @@ def contact_way(frame: Frame) -> float:
     return float(CONTACT_TEXELS * frame.volume.min_spacing / frame.params.resolution)
 
 
-def _surface_light(frame: Frame, lamps: list[Lit], ways: Ways) -> dict[str, Any]:
-    """Return how surfaces read the lamps' textures."""
-    lift, length = np.zeros(4, np.float32), np.zeros(4, np.float32)
+def _lift(frame: Frame, texels: list[float], ways: list[float]) -> dict[str, np.ndarray]:
+    """Return how far off a surface its light is asked for: in mm, and as a part of the way there."""
+    lift, share = np.zeros(4, np.float32), np.zeros(4, np.float32)
+    if frame.params.geometry_on_geometry:
+        lift[: len(texels)] = texels
+        share[: len(texels)] = [t / max(w, 1e-9) for t, w in zip(texels, ways, strict=False)]
+    return {"u_lift": lift, "u_lift_share": share}
+
+
+def _near_length(frame: Frame, lamps: list[Lit], ways: Ways) -> np.ndarray:
+    """Return what the way from a surface to where its light is asked for counts as, in mm of the volume."""
+    length = np.zeros(4, np.float32)
     for k, lit in enumerate(lamps):
-        lift[k] = lit.grid.lattice.texel if frame.params.geometry_on_geometry else 0.0
         if frame.params.volume_on_geometry:
             length[k] = ways.lengths[k] * float(np.mean(lit.grid.secants))
-    return {"u_lift": lift, "u_near_length": length}
+    return length
 
 
-def _vicinity(frame: Frame, lamps: list[Lit]) -> dict[str, Any]:
+def _vicinity(frame: Frame, stage: Stage) -> dict[str, Any]:
     """Return what the vicinity term needs."""
     params, way = frame.params, contact_way(frame)
-    axes, cosines = np.zeros((8, 3), np.float32), np.ones(4, np.float32)
-    for k, (lit, light) in enumerate(zip(lamps, frame.scene.active_lights, strict=True)):
-        axes[2 * k : 2 * k + 2] = lit.grid.lattice.stack.view.axes[:2]
+    cosines = np.ones(4, np.float32)
+    for k, light in enumerate(frame.scene.active_lights):
         cosines[k] = math.cos(math.radians(light.aperture))
     strength = params.vicinity * params.geometry_opacity if params.geometry_on_geometry else 0.0
     return {
         "u_vicinity": strength, "u_vicinity_samples": params.vicinity_samples, "u_vicinity_way": way,
-        "u_vicinity_bias": params.vicinity_bias * way, "u_cone_axes": axes, "u_cone_cosine": cosines,
+        "u_vicinity_bias": params.vicinity_bias * way, "u_cone_axes": lamp_axes(frame, stage), "u_cone_cosine": cosines,
         "u_disc": turned_disc(frame.index * 2.399963), "u_step_offset": (0.5 + frame.index * 0.7548776662466927) % 1.0,
     }  # fmt: skip
 
