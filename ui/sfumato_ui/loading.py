@@ -15,6 +15,7 @@ import sfumato_samples
 from sfumato import Geometry, Scene, SfumatoError, Tracing, Volume
 from sfumato.export.png import carries_scene, open_png
 from sfumato.geometry import is_geometry
+from sfumato.geometry.directions import LEAST_ANISOTROPY
 from sfumato.scene.presets import presets_for, suggest_view
 
 from .camera_moves import whole_view
@@ -213,6 +214,8 @@ def with_streamlines(scene: Scene, progress: Any = None, cancel: Any = None) -> 
     try:
         field = load_field(volume.info.path)
         tracing = Tracing(path=volume.info.path, seeds=suggest_seeds(field))
+        if field.axial:
+            tracing = replace(tracing, min_speed=LEAST_ANISOTROPY)
         made = trace(tracing, field, progress=progress, cancel=cancel)
         mesh_of(made)
     except LoadCancelled:

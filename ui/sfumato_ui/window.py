@@ -249,8 +249,8 @@ class MainWindow(QMainWindow):
             self.editor.change(f"View from the {view}" if view else "See the whole", camera=camera)
 
     def _show_building(self, done: float, text: str) -> None:
-        """Tell how far meshes are, unless the bar has something else to tell."""
-        if done < 1 and self.messages.kind in ("", "progress"):
+        """Tell how far meshes are, unless the bar tells of an error or asks something."""
+        if done < 1 and self.messages.kind in ("", "progress", "notice"):
             self.messages.show_progress(f"{text}…", done)
         elif done >= 1 and self.messages.text.startswith("Building"):
             self.messages.clear("progress")

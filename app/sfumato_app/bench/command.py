@@ -18,8 +18,9 @@ from .measure import run, warm_up
 from .plot import save_plot
 from .ratios import outcomes
 from .report import Report, save_pictures
-from .rows import Row, Stage, rows
+from .rows import Row, Stage, rows, tube_rows
 from .setting import Setting
+from .tracts import LINES, measure_tracts
 
 #: What ``--quick`` asks for in place of the defaults.
 QUICK = {"rounds": 3, "size": 128, "viewport": 256}
@@ -52,6 +53,8 @@ def main(argv: Sequence[str]) -> int:
             return _drag(options)
         if options.blocks:
             return _blocks(options)
+        if options.tracts:
+            return _tracts(options)
         report = measure(chosen, options.rounds, sys.stderr.isatty())
         print(report.text())
         _write(report, options)
@@ -125,6 +128,16 @@ def _blocks(options: argparse.Namespace) -> int:
     return 0
 
 
+def _tracts(options: argparse.Namespace) -> int:
+    """Measure how long a large tractogram takes to open, print it, and write what was asked for."""
+    tell = _tell if sys.stderr.isatty() else _say_nothing
+    report = measure_tracts(LINES // 20 if options.quick else LINES, tell)
+    print(report.text())
+    if options.json is not None:
+        options.json.write_text(json.dumps(report.to_json(), indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="sfumato bench",
@@ -158,6 +171,16 @@ def _parser() -> argparse.ArgumentParser:
         "number of directions",
     )
     parser.add_argument(
+        "--tubes",
+        action="store_true",
+        help="the rows of geometry in the volume: combined beside the volume alone, by number of triangles",
+    )
+    parser.add_argument(
+        "--tracts",
+        action="store_true",
+        help=f"from a tractogram of {LINES} lines to its first picture in a real window (needs a display)",
+    )
+    parser.add_argument(
         "--technique", default="cone", metavar="ID", help="the technique of --drag (default cone)"
     )
     parser.add_argument("--only", metavar="ID,...", help=f"only these rows: {ids}")
@@ -182,7 +205,8 @@ def _chosen(options: argparse.Namespace) -> tuple[Row, ...]:
     for name, value in (QUICK if options.quick else DEFAULTS).items():
         if getattr(options, name) is None:
             setattr(options, name, value)
-    table = rows(Setting(size=options.size, viewport=options.viewport))
+    setting = Setting(size=options.size, viewport=options.viewport)
+    table = tube_rows(setting) if options.tubes else rows(setting)
     if options.only is None:
         return table
     wanted = [name.strip() for name in options.only.split(",")]

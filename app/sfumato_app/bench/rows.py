@@ -15,6 +15,7 @@ from .contender import Contender
 from .extinction import Building, Neighbourhood
 from .ours import SWING, MovingLight, Ours, Retouched
 from .setting import Setting
+from .tubes import TRIANGLES, tubes
 
 if TYPE_CHECKING:
     from .peer_vtk import VtkStage
@@ -118,6 +119,30 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("vtk-gpu-shadows", "VTK GPU mapper, volumetric shadows", _vtk("gpu_shadow_mapper", shade=True)),
     )
     return tuple(Row(key, label, key.startswith("vtk-"), setting, make) for key, label, make in table)
+
+
+def tube_rows(setting: Setting) -> tuple[Row, ...]:
+    """Return the rows of the table of tubes: the volume alone, and with ever more triangles."""
+    table: list[tuple[str, str, Callable[[Stage, Setting], Contender]]] = [
+        ("cone", "the volume alone, its light trembling", _moving("cone", "rotation", swing=1)),
+        ("cone-still", "... its light kept", _ours("cone")),
+    ]
+    for name, count in TRIANGLES.items():
+        table += [
+            (f"combined-{name}", f"with {name} triangles, its light trembling", _tubes(count, moving=True)),
+            (f"combined-{name}-still", "... its light kept", _tubes(count, moving=False)),
+        ]
+    return tuple(Row(key, label, False, setting, make) for key, label, make in table)
+
+
+def _tubes(triangles: int, *, moving: bool) -> Callable[[Stage, Setting], Contender]:
+    def make(stage: Stage, setting: Setting) -> Contender:
+        changes: dict[str, Any] = {"geometry": (tubes(triangles),)}
+        if moving:
+            return MovingLight(stage.renderer, setting, "combined", "rotation", 1, changes=changes)
+        return Ours(stage.renderer, setting, "combined", changes=changes)
+
+    return make
 
 
 def _ours(technique: str) -> Callable[[Stage, Setting], Contender]:

@@ -4,7 +4,7 @@
 `load`             `load_geometry`: the file formats, by name
 `tractograms`      TRK and TCK (nibabel);  `trx`: TRX;  `polydata`: VTP, VTK, STL, PLY, OBJ (VTK)
 `cleaning`         what a file holds becomes a shape: bad lines are left out and counted
-`field`            vector fields;  `seeding`: seeds;  `streamlines`: vtkStreamTracer
+`field`            vector fields;  `directions`: of tensors;  `seeding`: seeds;  `streamlines`: vtkStreamTracer
 `polyline`         filters, B-spline, thinning out: all lines at once
 `detail`           level of detail by count
 `tubes`            the sweep;  `color`: colours of points;  `meshing`: all of it, kept

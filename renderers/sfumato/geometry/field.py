@@ -7,7 +7,7 @@ import importlib
 import mmap
 import os
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from ..io.reading import Task, check_claim, need
 from ..io.vtk import run
 from ..scene.volume import Volume
 from .cleaning import plural
+from .directions import direction_file, read_directions
 
 _XML = {"ImageData": "vtkXMLImageDataReader", "RectilinearGrid": "vtkXMLRectilinearGridReader"}
 _LEGACY = {
@@ -52,12 +53,15 @@ class VectorField:
         Hash of the vectors and the grid's bounds.
     notices : tuple of str
         What was done to it.
+    axial : bool
+        Whether they are directions without a sign (of tensors).
     """
 
     dataset: Any
     path: str = ""
     key: str = ""
     notices: tuple[str, ...] = field(default=())
+    axial: bool = False
 
     @staticmethod
     def from_array(vectors: np.ndarray, grid: Volume, path: str = "") -> VectorField:
@@ -94,12 +98,13 @@ def _module(name: str) -> Any:
 
 
 def load_field(path: str | os.PathLike[str], array: str = "") -> VectorField:
-    """Read a vector field: VTI, VTR or legacy VTK with vectors, or ``sample:pipe``.
+    """Read a vector field: VTI, VTR or legacy VTK with vectors, main directions in NIfTI, or ``sample:pipe``.
 
     Parameters
     ----------
     array : str
-        Which array, where the file holds several with three components.
+        Which array, where the file holds several with three components; of NIfTI: ``world`` if its components
+        are along the world's axes (RAS) instead of the voxels'.
 
     Raises
     ------
@@ -115,6 +120,11 @@ def load_field(path: str | os.PathLike[str], array: str = "") -> VectorField:
     with guarded(task):
         if not task.path.is_file():
             raise task.error("there is no such file", "check the path")
+        directions = direction_file(task.path)
+        if directions is not None:
+            vectors, grid, told = read_directions(directions, task, array)
+            made = VectorField.from_array(vectors, grid, text)
+            return replace(made, notices=(*told, *made.notices), axial=True)
         dataset = run(_reader(task), task)
         points, vectors, notices = _vectors(dataset, task, array)
         made = _finished(points, vectors, text)
@@ -128,6 +138,8 @@ def has_vectors(path: str | os.PathLike[str]) -> bool:
         names = importlib.import_module("sfumato_samples").catalogue()
         return any(e.vectors and f"sample:{e.name}" == text for e in names)
     place = Path(text)
+    if direction_file(place) is not None:
+        return True
     if (
         place.suffix.lower() not in (".vti", ".vtr", ".vtk")
         or not place.is_file()

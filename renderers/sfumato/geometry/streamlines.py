@@ -79,7 +79,7 @@ def trace(
             kind="streamlines",
             name=name,
             notices=(*field.notices, *notices),
-            color_by="scalar",
+            color_by="direction" if field.axial else "scalar",
             scalar=SPEED,
         )
 

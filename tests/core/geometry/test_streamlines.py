@@ -8,7 +8,7 @@ import pytest
 
 import sfumato
 from sfumato import LoadError, Scene, SceneError, Seeds, Surface, Tracing, Volume
-from sfumato.geometry import VectorField, load_field, trace
+from sfumato.geometry import VectorField, has_vectors, load_field, trace
 from sfumato.geometry.seeding import seed_points
 from sfumato.io import LoadCancelled
 
@@ -180,3 +180,46 @@ def test_real_fields(name: str) -> None:
     assert made.shape.count > 80
     assert (made.bounds[0] >= low - 1e-3).all()
     assert (made.bounds[1] <= high + 1e-3).all()
+
+
+# -- main directions of tensors --------------------------------------------------------------------
+def test_directions_without_a_sign_are_traced_through(tmp_path: Path) -> None:
+    """An arc whose directions have random signs, in FSL's two files, turned about in space: lines follow the arc."""
+    import nibabel
+
+    x, y = np.meshgrid(np.arange(24.0), np.arange(24.0), indexing="ij")
+    radius = np.hypot(x, y)
+    ring = (radius > 8) & (radius < 20)
+    along = np.stack([-y, x, 0 * x], axis=-1) / np.maximum(radius, 1)[..., None]
+    signs = np.random.default_rng(0).choice([-1, 1], (24, 24, 5))
+    vectors = np.where(ring[..., None, None], along[:, :, None, :] * signs[..., None], 0).astype(np.float32)
+    # Right-handed voxels: FSL turns the first component round.
+    affine = np.diag([2.0, 2, 2, 1])
+    image = nibabel.Nifti1Image(vectors * np.array([-1, 1, 1], np.float32), affine)
+    image.header["intent_code"] = 1007
+    nibabel.save(image, tmp_path / "dti_V1.nii.gz")
+    nibabel.save(
+        nibabel.Nifti1Image(np.repeat(0.7 * ring[:, :, None], 5, 2).astype(np.float32), affine),
+        tmp_path / "dti_FA.nii.gz",
+    )
+    path = str(tmp_path / "dti_FA.nii.gz")
+    assert has_vectors(path)
+    field = load_field(path)
+    assert field.axial
+    assert field.bounds == pytest.approx(sfumato_box(path), abs=1e-3)
+    seed = Seeds(kind="points", places=((-28 * np.cos(0.7), -28 * np.sin(0.7), 4.0),))
+    lines = trace(Tracing(path=path, seeds=seed, min_speed=0.3), field)
+    points = lines.shape.points
+    away = np.hypot(points[:, 0], points[:, 1])
+    assert away == pytest.approx(28, abs=1.5)
+    assert lines.shape.lengths.max() > 0.85 * 28 * np.pi / 2, "from end to end"
+    assert lines.color_by == "direction"
+    world = load_field(path, "world")
+    assert world.key != field.key, "the components of other programs run along the world's axes"
+
+
+def sfumato_box(path: str) -> np.ndarray:
+    """The centres of the outermost voxels, as the volume itself has them."""
+    volume = sfumato.load(path)
+    corners, half = volume.corners(), np.array(volume.spacing) / 2
+    return np.stack([corners.min(axis=0) + half, corners.max(axis=0) - half])
