@@ -105,6 +105,7 @@ def declared_parameters() -> dict[str, _Declared]:
         "dpi",
         "bits",
         "scale_bar",
+        "color_bar",
         "output",
         "linear",
         "volume",

@@ -42,6 +42,10 @@ class PrintFlags:
         bool,
         Parameter(negative="", help="Draw a scale bar; needs an orthographic view.", group=PRINT),
     ] = False
+    color_bar: Annotated[
+        bool,
+        Parameter(negative="", help="Draw the colour bars of tracts and meshes.", group=PRINT),
+    ] = False
 
     def spec(self) -> PictureSpec:
         """Return the picture file.
@@ -56,17 +60,23 @@ class PrintFlags:
         bits = 8 if self.bits is None else self.bits
         if self.mm is None:
             return PictureSpec(
-                parse_size(self.size or DEFAULT_SIZE), bits, dpi=self.dpi, scale_bar=self.scale_bar
-            )
+                parse_size(self.size or DEFAULT_SIZE), bits, dpi=self.dpi, scale_bar=self.scale_bar,
+                color_bars=self.color_bar,
+            )  # fmt: skip
         if self.size is not None:
             raise UsageError("--size and --mm: one of them is enough")
         dpi = self.dpi or DPI
-        return PictureSpec.printed(parse_millimetres(self.mm), dpi, bits=bits, scale_bar=self.scale_bar)
+        return PictureSpec.printed(
+            parse_millimetres(self.mm), dpi, bits=bits, scale_bar=self.scale_bar, color_bars=self.color_bar
+        )
 
     @property
     def only_for_print(self) -> list[str]:
         """The flags given that linear pictures do not know."""
-        given = {"--dpi": self.dpi, "--bits": self.bits, "--scale-bar": self.scale_bar or None}
+        given = {
+            "--dpi": self.dpi, "--bits": self.bits, "--scale-bar": self.scale_bar or None,
+            "--color-bar": self.color_bar or None,
+        }  # fmt: skip
         return [name for name, value in given.items() if value is not None]
 
 

@@ -11,7 +11,8 @@ import pytest
 from PIL import Image
 
 import sfumato
-from sfumato import Camera, Light, LoadError, Scene, SceneError, SfumatoError
+from sfumato import Camera, Geometry, Light, Lines, LoadError, Scene, SceneError, SfumatoError
+from sfumato.export.color_bars import BarsInk
 from sfumato.export.encode import encode16, srgb
 from sfumato.export.picture import PictureSpec, framed, pixels_of, write_picture
 from sfumato.export.png import carries_scene, open_png, read_scene_data, write_png
@@ -318,3 +319,30 @@ def test_scale_bars_that_cannot_be():
         ScaleBar.for_picture(Camera(), (400, 300))
     with pytest.raises(SceneError, match="larger"):
         ScaleBar.for_picture(Camera(parallel_projection=True), (20, 10))
+
+
+# -- colour bars -----------------------------------------------------------------------------------
+@pytest.mark.gpu
+def test_a_picture_of_tracts_alone_has_its_colour_bar(tmp_path):
+    """Strip from the map's end to its begin, ticks' values beside it; nothing if no scalar colours anything."""
+    lines = Lines.of([[[0, 0, 0], [30, 0, 0], [30, 0, 30]]], [("fa", [np.array([0.0, 0.5, 1.0])])])
+    tracts = Geometry(lines, radius=0.5, color_by="scalar", colormap="gray")
+    scene = Scene(geometry=(tracts,), technique="combined", background=(0.2, 0.3, 0.4, 1))
+    pictures = {}
+    for name, spec in (("bar", PictureSpec((240, 200), color_bars=True)), ("bare", PictureSpec((240, 200)))):
+        for _ in write_picture(tmp_path / f"{name}.png", scene, spec):
+            pass
+        pictures[name] = np.asarray(Image.open(tmp_path / f"{name}.png").convert("RGB")).astype(int)
+    changed = np.abs(pictures["bar"] - pictures["bare"]).max(axis=2) > 4
+    rows, columns = np.nonzero(changed)
+    assert columns.max() < 120
+    assert rows.min() > 100
+    ink = BarsInk.for_picture(scene, (240, 200))
+    assert ink is not None
+    strip = ink.pixels[:, round(0.8 * 9) + 3]
+    solid = strip[strip[:, 3] == 1][:, 0]
+    assert solid[0] > 0.99
+    assert solid[-1] < 0.01
+    assert (np.diff(solid) <= 0).all()
+    assert BarsInk.for_picture(scene.with_(**{"geometry.0.color_by": "color"}), (240, 200)) is None
+    assert BarsInk.for_picture(scene, (60, 40)) is None, "no room"

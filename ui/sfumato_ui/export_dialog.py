@@ -59,6 +59,7 @@ class ExportDialog(QDialog):
         orthographic: bool,
         estimate: Callable[[tuple[int, int], int], float | None],
         parent: QWidget,
+        colored: bool = False,
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle("Export the picture")
@@ -68,6 +69,8 @@ class ExportDialog(QDialog):
         dpi = min(2400.0, max(30.0, float(str(kept.value("export/dpi", 300.0)))))
         self.size_wanted = ExportSize(seen, dpi, aspect=seen[0] / seen[1])
         self._make_fields(orthographic)
+        self.color_bars.setChecked(colored)
+        self.color_bars.setVisible(colored)
         self.format.setCurrentIndex(max(0, self.format.findText(str(kept.value("export/format", "PNG")))))
         self.bits.setCurrentIndex(1 if kept.value("export/bits", 8, type=int) == 16 else 0)
         self.quality.setCurrentIndex(
@@ -95,6 +98,8 @@ class ExportDialog(QDialog):
         self.quality.setToolTip("Draft, normal, fine: 2, 8 or 32 pictures are averaged")
         self.transparent = QCheckBox("Transparent background")
         self.transparent.setToolTip("Leave the background out")
+        self.color_bars = QCheckBox("Colour bar")
+        self.color_bars.setToolTip("The values behind the colours of tracts and meshes, lower left")
         self.scale_bar = QCheckBox("Scale bar")
         self.scale_bar.setEnabled(orthographic)
         self.scale_bar.setToolTip(
@@ -116,6 +121,10 @@ class ExportDialog(QDialog):
         form.addRow("Quality", self.quality)
         form.addRow("", self.transparent)
         form.addRow("", self.scale_bar)
+        if self.color_bars.isChecked():
+            form.addRow("", self.color_bars)
+        else:
+            self.color_bars.setParent(self)
         if not orthographic:
             reason = QLabel("A scale bar needs an orthographic view.")
             reason.setEnabled(False)
@@ -197,6 +206,7 @@ class ExportDialog(QDialog):
             dpi=self.size_wanted.dpi,
             frames=QUALITIES[self.quality.currentText()],
             scale_bar=self.scale_bar.isChecked(),
+            color_bars=self.color_bars.isChecked(),
         )
 
     @property

@@ -13,6 +13,7 @@ from qtpy.QtWidgets import QApplication, QFileDialog, QWidget
 from sfumato import Scene, SceneError
 from sfumato.export.picture import PictureSpec, framed, write_picture
 from sfumato.export.tiles import Guest, bands_of
+from sfumato.geometry import color_bars
 
 from .color_button import to_linear
 from .editing import Editor
@@ -71,8 +72,9 @@ class Exporter(QObject):
         if not is_open(self._editor.scene) or camera is None:
             return
         dialog = ExportDialog(
-            self._viewport.pixel_size, camera.parallel_projection, self.seconds_for, self._window
-        )
+            self._viewport.pixel_size, camera.parallel_projection, self.seconds_for, self._window,
+            colored=bool(color_bars(self._editor.scene)),
+        )  # fmt: skip
         dialog.accepted.connect(lambda: self._ask_for_file(dialog.wish))
         self.time_known.connect(dialog.show_summary)
         dialog.finished.connect(dialog.deleteLater)

@@ -15,6 +15,7 @@ import numpy as np
 from ..errors import SceneError, SfumatoError
 from ..scene import Camera, Scene
 from .atomic import replacing
+from .color_bars import BarsInk
 from .encode import encode16
 from .png import scene_text
 from .scale_bar import ScaleBar
@@ -51,6 +52,8 @@ class PictureSpec:
         Jittered frames to accumulate; the scene's if not given.
     scale_bar : bool
         Draw a scale bar; needs an orthographic view.
+    color_bars : bool
+        Draw the colour bars of geometry that is coloured by a scalar, if there is any.
 
     Raises
     ------
@@ -63,6 +66,7 @@ class PictureSpec:
     dpi: float | None = None
     frames: int | None = None
     scale_bar: bool = False
+    color_bars: bool = False
 
     def __post_init__(self) -> None:
         width, height = self.size
@@ -166,14 +170,18 @@ def write_picture(
     stream_of = STREAMS.get(Path(path).suffix.lower())
     if stream_of is None:
         raise SfumatoError(f"{path}: pictures end in {', '.join(STREAMS)}")
-    if scene.volume is None or scene.camera is None:
-        raise SceneError("volume", None, "a scene needs a volume to be drawn")
-    bar = ScaleBar.for_picture(scene.camera, spec.size, spec.dpi) if spec.scale_bar else None
+    if scene.camera is None:
+        raise SceneError("volume", None, "a scene needs a volume or geometry to be drawn")
+    inks: list[ScaleBar | BarsInk] = []
+    if spec.scale_bar:
+        inks.append(ScaleBar.for_picture(scene.camera, spec.size, spec.dpi))
+    if spec.color_bars and (bars := BarsInk.for_picture(scene, spec.size, spec.dpi)) is not None:
+        inks.append(bars)
     text = scene_text(carried or scene)
     bands = bands_of(spec.size, tile_side, tile_pixels)
     with replacing(path) as part, open(part, "wb") as file:
         stream: PictureStream = stream_of(file, spec.size, spec.bits, text, spec.dpi)
-        yield from _draw(renderer or renderer_of_this_thread(), scene, spec, bands, stream, bar, guest)
+        yield from _draw(renderer or renderer_of_this_thread(), scene, spec, bands, stream, inks, guest)
         stream.close()
         file.flush()
         os.fsync(file.fileno())
@@ -185,7 +193,7 @@ def _draw(
     spec: PictureSpec,
     bands: tuple[tuple[Tile, ...], ...],
     stream: PictureStream,
-    bar: ScaleBar | None,
+    inks: list[ScaleBar | BarsInk],
     guest: Guest | None,
 ) -> Generator[float, None, None]:
     """Draw band after band into a stream."""
@@ -198,8 +206,8 @@ def _draw(
             pixels = yield from _tile(renderer, scene, spec, tile, (done / total, area / total), guest)
             rows[:, tile.x : tile.x + tile.width] = pixels
             done += area
-        if bar is not None:
-            bar.draw_on(rows, top)
+        for ink in inks:
+            ink.draw_on(rows, top)
         stream.write(rows)
 
 
