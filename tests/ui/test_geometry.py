@@ -189,7 +189,7 @@ def test_a_change_that_takes_long_can_be_given_up(window, shapes, hand, qtbot, m
 
     monkeypatch.setattr(meshing, "build", slow)
     before = shown(window).radius
-    window.editor.change("Thicker", **{"geometry.0.radius": 2 * before})
+    window.editor.change("Thicker", **{"geometry.0.radius": 3 * before})
     qtbot.waitUntil(lambda: window.messages.kind == "progress", timeout=20_000)
     assert window.messages.text.startswith("Building tubes")
     assert window.viewport.picture.scene.geometry[0].radius == before
