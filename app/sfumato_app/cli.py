@@ -77,6 +77,10 @@ def render(
             help="Tracts or a mesh to add: TRK, TCK, TRX, VTP, VTK, STL, PLY, OBJ (repeatable).",
         ),
     ] = None,
+    auto_exposure: Annotated[
+        bool,
+        Parameter(negative="", help="Expose so that bright parts have the brightness of their own colour."),
+    ] = False,
     file: PrintFlags = PrintFlags(),  # noqa: B008
     read: ReadFlags = ReadFlags(),  # noqa: B008
     flags: SceneFlags = SceneFlags(),  # noqa: B008
@@ -97,6 +101,10 @@ def render(
     if not is_scene(path) and scene.camera is not None:
         scene = scene.with_(camera=widened(scene.camera, aspect))
     scene = changed(scene, flags, own, aspect)
+    if auto_exposure:
+        from sfumato.exposure import automatic_exposure
+
+        scene = scene.with_(exposure=automatic_exposure(scene))
     print(draw(scene, spec, target, linear))
 
 

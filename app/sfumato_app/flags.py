@@ -15,6 +15,7 @@ from cyclopts import Group, Parameter
 from sfumato import Camera, LoadError, Scene, SceneError, TransferFunction
 from sfumato.scene import STANDARD_VIEWS, Field, Light, fields_of, parse_setting
 from sfumato.scene.params import from_json
+from sfumato.scene.rig_files import fitted, load_rig
 from sfumato.scene.rigs import rig_named, rigs
 from sfumato.techniques import techniques
 
@@ -62,6 +63,10 @@ class SceneFlags:
     rig: Annotated[
         RigId | None, Parameter(help="A set of lamps, instead of the scene's; the first is the key.")
     ] = None
+    rig_file: Annotated[
+        Path | None,
+        Parameter(help="A rig of one's own, as the window exports it, instead of the scene's lamps."),
+    ] = None
     transfer: Annotated[
         str | None,
         Parameter(help="Preset of the transfer function, or a file: its JSON, or a scene that has one."),
@@ -108,6 +113,7 @@ def declared_parameters() -> dict[str, _Declared]:
         "color_bar",
         "output",
         "linear",
+        "auto_exposure",
         "volume",
         "geometry",
         "path",
@@ -187,6 +193,11 @@ def changed(scene: Scene, flags: SceneFlags, own: Any, aspect: float) -> Scene:
         scene = scene.with_(technique=technique)
     if flags.rig:
         scene = scene.with_(lights=rig_named(flags.rig).lights)
+    if flags.rig_file:
+        if flags.rig:
+            raise UsageError("--rig and --rig-file: give one of them")
+        kept = load_rig(flags.rig_file).lights
+        scene = scene.with_(lights=kept if scene.volume is None else fitted(kept, scene.volume))
     if flags.transfer:
         scene = scene.with_(transfer=transfer_of(scene, flags.transfer))
     if flags.camera:

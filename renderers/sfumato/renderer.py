@@ -13,6 +13,7 @@ from .audit import Audit, audited
 from .errors import SceneError
 from .gpu import Device, GpuObject, Program, ShaderSource, Target, gpu_objects
 from .scene import Scene
+from .scene.white import balance_matrix
 from .techniques import Painter, technique_for
 from .techniques.frame import DRAG, FULL, Frame, Quality
 
@@ -131,8 +132,10 @@ class Renderer:
         self._resolve.set(
             u_floor=scene.shadow_floor if unshadowed is not None else 0.0,
             u_scale=1 / frames,
-            u_exposure=2.0**scene.exposure,
             u_background=_premultiplied(scene),
+            u_soft=scene.tone_curve == "soft",
+            # Column by column, as GLSL has matrices.
+            u_to_white=tuple((2.0**scene.exposure * balance_matrix(scene.white_balance)).T.ravel().tolist()),
         )
         self._resolve.draw()
         self.device.wait()
@@ -261,7 +264,7 @@ class Accumulation:
     def linear(self) -> np.ndarray:
         """Return linear light so far: float32, premultiplied, before exposure; shape (height, width, 4)."""
         self.renderer.device.make_current()
-        light = self._floored()
+        light = self.foreground()
         return np.asarray(
             light + (1 - light[..., 3:]) * np.asarray(_premultiplied(self.scene), dtype=np.float32)
         )
@@ -275,7 +278,7 @@ class Accumulation:
             If the picture was not begun as an ``audited`` one, or has no frame yet.
         """
         self.renderer.device.make_current()
-        light = self._floored()
+        light = self.foreground()
         if technique_for(self.scene.technique).shadows and self._unshadowed is None:
             raise SceneError("audited", False, "begin the picture with audited=True")
         full = light if self._unshadowed is None else self._mean(self._unshadowed)
@@ -284,8 +287,9 @@ class Accumulation:
     def _mean(self, total: Target) -> np.ndarray:
         return total.read() / np.float32(self.frames)
 
-    def _floored(self) -> np.ndarray:
-        """Return the mean of the frames, no darker than the scene's floor."""
+    def foreground(self) -> np.ndarray:
+        """Return linear light so far as `linear` does, but without the background."""
+        self.renderer.device.make_current()
         light = self._mean(self._sum())
         if self._unshadowed is not None and self.scene.shadow_floor > 0:
             floor = np.float32(self.scene.shadow_floor)

@@ -61,6 +61,7 @@ _FIXED = (
     Command("tool-light", "Tool: Light", "Tool", ("L",)),
     Command("tool-shadow", "Tool: Shadow", "Tool", ("S",)),
     Command("tool-clip", "Tool: Clip", "Tool", ("C",)),
+    Command("exposure", "Automatic exposure", "View", ("X",)),
     Command("audit", "Shadow audit: mark what shadows hide", "Light", ("A",)),
     Command("fit", "See the whole subject", "View", ("Home",)),
 )

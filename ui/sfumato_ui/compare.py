@@ -17,6 +17,7 @@ from sfumato import Scene, SceneError
 from sfumato.techniques import techniques
 from sfumato.techniques.frame import FULL
 
+from .auto_exposure import AutoExposure
 from .camera_moves import edge_letters
 from .compare_grid import CompareGrid, rig_choices, technique_choices
 from .difference import difference_picture
@@ -64,7 +65,12 @@ class ComparePage(QWidget):
     """The drawer's page: against what, and how."""
 
     def __init__(
-        self, editor: Editor, viewport: Viewport, thumbnails: Thumbnails, history: HistoryRow
+        self,
+        editor: Editor,
+        viewport: Viewport,
+        thumbnails: Thumbnails,
+        history: HistoryRow,
+        auto: AutoExposure,
     ) -> None:
         super().__init__()
         self._editor, self._viewport, self._thumbnails = editor, viewport, thumbnails
@@ -74,8 +80,10 @@ class ComparePage(QWidget):
         self._present: Picture | None = None
         self.layer, self.handle = CompareLayer(viewport), WipeHandle(viewport)
         self.grids = {
-            name: CompareGrid(viewport, editor, thumbnails, f"compare-{name}", choices)
-            for name, choices in (("techniques", technique_choices()), ("rigs", rig_choices()))
+            "techniques": CompareGrid(
+                viewport, editor, thumbnails, "compare-techniques", technique_choices()
+            ),
+            "rigs": CompareGrid(viewport, editor, thumbnails, "compare-rigs", rig_choices(), auto),
         }
         viewport.controls_over += [self.handle, *self.grids.values()]
         FollowsSize(viewport, (self.layer, self.handle, *self.grids.values()))

@@ -14,6 +14,7 @@ from sfumato.scene.rigs import rig_of, rigs
 from sfumato.techniques import techniques
 from sfumato.techniques.frame import FULL
 
+from .auto_exposure import AutoExposure, exposure_of, unexposed
 from .editing import Editor
 from .overlay import draw_text
 from .theme import DARK, PICTURE_GREY
@@ -135,8 +136,10 @@ class CompareGrid(QWidget):
         thumbnails: Thumbnails,
         group: str,
         choices: Mapping[str, Choice],
+        auto: AutoExposure | None = None,
     ) -> None:
         super().__init__(picture)
+        self._auto = auto
         self._picture, self._editor, self._thumbnails, self._group = picture, editor, thumbnails, group
         self.cells = {name: GridCell(choice) for name, choice in choices.items()}
         columns = _columns(len(self.cells))
@@ -164,7 +167,14 @@ class CompareGrid(QWidget):
 
     def _take(self, cell: GridCell) -> None:
         scene = cell.choice.scene_of(self._editor.scene)
-        self._editor.change(cell.choice.label, technique=scene.technique, lights=scene.lights)
+        stops = exposure_of(cell.image) if self._exposed else None
+        exposed = {} if stops is None else {"exposure": stops}
+        self._editor.change(cell.choice.label, technique=scene.technique, lights=scene.lights, **exposed)
+
+    @property
+    def _exposed(self) -> bool:
+        """Whether each cell has an exposure of its own."""
+        return self._auto is not None and self._auto.on
 
     def _on_changed(self) -> None:
         if self.isVisible():
@@ -186,12 +196,15 @@ class CompareGrid(QWidget):
         wanted: dict[Hashable, Scene] = {}
         for name, cell in self.cells.items():
             try:
-                wanted[name] = cell.choice.scene_of(scene)
+                wanted[name] = cell.choice.scene_of(unexposed(scene) if self._exposed else scene)
             except SceneError as error:
                 cell.setToolTip(str(error))
                 cell.setEnabled(False)
             cell.set_image(QImage())
-        self._thumbnails.want(self._group, wanted, size, quality=FULL, frames=FRAMES, first=True, timed=True)
+        self._thumbnails.want(
+            self._group, wanted, size, quality=FULL, frames=FRAMES, first=True, timed=True,
+            exposed=self._exposed,
+        )  # fmt: skip
 
     def _on_ready(self, group: str, key: Hashable, image: QImage) -> None:
         if group == self._group and isinstance(key, str) and key in self.cells:

@@ -81,7 +81,17 @@ def slider_for(field: Field) -> LabelledSlider:
     low, high = slider_range(param)
     whole = field.kind is int
     # About a hundred key steps from end to end, rounded to a decimal power.
-    step = 1.0 if whole or high - low >= 50 else 0.1 if high - low > 4 else 0.01 if high - low <= 1 else 0.05
+    step = (
+        100.0
+        if high - low >= 5000
+        else 1.0
+        if whole or high - low >= 50
+        else 0.1
+        if high - low > 4
+        else 0.01
+        if high - low <= 1
+        else 0.05
+    )
     decimals = 0 if whole or (step >= 1 and low == round(low)) else 1 if step >= 1 else 2
     limits = (param.ge if param.ge is not None else low, param.le if param.le is not None else high)
     return LabelledSlider(

@@ -72,7 +72,7 @@ class ThumbnailRequest:
     """A control wants a picture when there is time; ``group`` and ``key`` are its own names for it.
 
     Without quality and frames it is drawn coarsely, as suits a small one. If ``timed``, the image says by its text
-    "seconds" how long a frame takes.
+    "seconds" how long a frame takes. If ``exposed``, it has the scene's automatic exposure, and says it by "exposure".
     """
 
     group: str
@@ -82,6 +82,7 @@ class ThumbnailRequest:
     quality: Quality | None = None
     frames: int = 0
     timed: bool = False
+    exposed: bool = False
 
 
 def affordable_frames(most: int, drawn: int, seconds: float) -> int:

@@ -19,8 +19,9 @@ class AskLine(QWidget):
     answered = Signal(str)
     given_up = Signal()
 
-    def __init__(self) -> None:
+    def __init__(self, noun: str = "preset") -> None:
         super().__init__()
+        self._noun = noun
         self._complaint: Callable[[str], str] = lambda text: ""
         self._text = QLineEdit()
         self._question = QLabel()
@@ -56,7 +57,7 @@ class AskLine(QWidget):
     def ask_name(self, verb: str, name: str, complaint: Callable[[str], str]) -> None:
         """Ask for a name; `complaint` says what is wrong with one."""
         self._complaint = complaint
-        self._text.setAccessibleName("Name of the preset")
+        self._text.setAccessibleName(f"Name of the {self._noun}")
         self._text.setPlaceholderText("Name")
         self._text.setText(name)
         self._text.selectAll()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+import dataclasses
+from collections.abc import Hashable, Sequence
 
 from qtpy.QtCore import QRectF, QSize, Qt, QTimer, Signal
 from qtpy.QtGui import (
@@ -20,9 +21,11 @@ from qtpy.QtGui import (
 )
 from qtpy.QtWidgets import QAbstractButton, QGridLayout, QSizePolicy, QWidget
 
-from sfumato import Scene
-from sfumato.scene.rigs import Rig, rig_of, rigs
+from sfumato import Light, Scene
+from sfumato.scene.rig_files import fitted
+from sfumato.scene.rigs import Rig, rigs
 
+from .auto_exposure import AutoExposure, exposure_of, unexposed
 from .editing import Editor
 from .theme import PICTURE_GREY, current_theme
 from .thumbnails import Thumbnails
@@ -36,6 +39,15 @@ PICTURE = (88, 60)
 QUIET_MS = 400
 
 
+#: What a rig's exposure depends on, besides its lamps.
+_SEEN = tuple(f.name for f in dataclasses.fields(Scene) if f.name not in ("lights", "exposure"))
+
+
+def _ground(scene: Scene, exposed: bool) -> Scene:
+    """Return the scene that rigs are shown on."""
+    return unexposed(scene) if exposed else scene
+
+
 class RigButton(QAbstractButton):
     """A rig's picture with its name below."""
 
@@ -46,6 +58,8 @@ class RigButton(QAbstractButton):
         super().__init__()
         self.rig = rig
         self._image = QImage()
+        #: Its automatic exposure in stops on the present scene, as far as that is known.
+        self.exposure: float | None = None
         self.setCheckable(True)
         self.setText(rig.title)
         self.setAccessibleName(f"Rig {rig.title}")
@@ -146,39 +160,79 @@ class RigButton(QAbstractButton):
 
 
 class RigsRow(QWidget):
-    """Some of the rigs; the pictures are drawn when the scene is still and the row is seen."""
+    """Some of the rigs; the pictures are drawn when the scene is still and the row is seen.
 
-    def __init__(self, editor: Editor, thumbnails: Thumbnails, group: str = "rigs") -> None:
+    Parameters
+    ----------
+    group : str
+        Name of its thumbnails; ``rigs`` are those that the tab shows at first, others the rest.
+    own : sequence of Rig, optional
+        The user's own rigs, which are of the size of no volume (`sfumato.scene.rig_files`), instead.
+    """
+
+    def __init__(
+        self,
+        editor: Editor,
+        thumbnails: Thumbnails,
+        auto: AutoExposure,
+        group: str = "rigs",
+        own: Sequence[Rig] | None = None,
+    ) -> None:
         super().__init__()
-        self._editor, self._thumbnails, self._group = editor, thumbnails, group
-        shown = list(rigs().values())[:FIRST] if group == "rigs" else list(rigs().values())[FIRST:]
-        self.buttons = {rig.id: RigButton(rig) for rig in shown}
+        self._editor, self._thumbnails, self._auto, self._group = editor, thumbnails, auto, group
+        self._own = own is not None
+        self._reason = ""
+        self.buttons: dict[str, RigButton] = {}
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setSpacing(2)
-        for i, button in enumerate(self.buttons.values()):
-            grid.addWidget(button, i // COLUMNS, i % COLUMNS)
-            button.clicked.connect(lambda _, rig=button.rig: self._apply(rig))
-            button.focus_moved.connect(lambda step, i=i: self._move_focus(i + step))
         for column in range(COLUMNS):
             grid.setColumnStretch(column, 1)
+        self._grid = grid
         self._quiet = QTimer(self)
         self._quiet.setSingleShot(True)
         self._quiet.setInterval(QUIET_MS)
         self._quiet.timeout.connect(self._want_pictures)
         editor.changed.connect(self._on_changed)
         thumbnails.ready.connect(self._on_ready)
+        built_in = tuple(rigs().values())
+        self.set_rigs(own if own is not None else built_in[:FIRST] if group == "rigs" else built_in[FIRST:])
+
+    def set_rigs(self, shown: Sequence[Rig]) -> None:
+        """Show other rigs."""
+        for button in self.buttons.values():
+            self._grid.removeWidget(button)
+            button.hide()
+            button.deleteLater()
+        self.buttons = {rig.id: RigButton(rig) for rig in shown}
+        for i, button in enumerate(self.buttons.values()):
+            self._grid.addWidget(button, i // COLUMNS, i % COLUMNS)
+            button.clicked.connect(lambda _, rig=button.rig: self._apply(rig))
+            button.focus_moved.connect(lambda step, i=i: self._move_focus(i + step))
+            button.set_reason(self._reason)
         self.refresh()
+
+    def _lights(self, rig: Rig) -> tuple[Light, ...]:
+        """Return a rig's lamps in the scene's world."""
+        volume = self._editor.scene.volume
+        return fitted(rig.lights, volume) if self._own and volume is not None else rig.lights
+
+    @property
+    def current(self) -> str:
+        """The rig by which the scene is lit, if it is one of these."""
+        lights = self._editor.scene.lights
+        return next((name for name, b in self.buttons.items() if self._lights(b.rig) == lights), "")
 
     def refresh(self) -> None:
         """Mark the current rig, and draw the pictures soon."""
-        current = rig_of(self._editor.scene.lights)
+        current = self.current
         for name, button in self.buttons.items():
             button.setChecked(name == current)
         self._quiet.start()
 
     def set_reason(self, reason: str) -> None:
         """Disable the rigs for a reason, or enable them if there is none."""
+        self._reason = reason
         self.setEnabled(not reason)
         self.setToolTip(reason)
         for button in self.buttons.values():
@@ -190,13 +244,21 @@ class RigsRow(QWidget):
         if old.volume is not new.volume:
             for button in self.buttons.values():
                 button.set_image(QImage())
+        if any(getattr(old, name) != getattr(new, name) for name in _SEEN):
+            for button in self.buttons.values():
+                button.exposure = None
         self.refresh()
 
     def _apply(self, rig: Rig) -> None:
-        if self._editor.scene.lights == rig.lights:
+        lights = self._lights(rig)
+        if self._editor.scene.lights == lights:
             return
-        if self._editor.change(f"Light with rig {rig.title}", lights=rig.lights):
+        label, stops = f"Light with rig {rig.title}", self.buttons[rig.id].exposure
+        exposed = {"exposure": stops} if self._auto.on and stops is not None else {}
+        if self._editor.change(label, lights=lights, **exposed):
             self._editor.select_light(0)
+            if self._auto.on and not exposed:
+                self._auto.ask(label)
 
     def _move_focus(self, index: int) -> None:
         if 0 <= index < len(self.buttons):
@@ -210,13 +272,15 @@ class RigsRow(QWidget):
         ratio = self.devicePixelRatioF()
         size = round(PICTURE[0] * ratio), round(PICTURE[1] * ratio)
         wanted: dict[Hashable, Scene] = {
-            name: scene.with_(lights=button.rig.lights) for name, button in self.buttons.items()
+            name: _ground(scene, self._auto.on).with_(lights=self._lights(button.rig))
+            for name, button in self.buttons.items()
         }
-        self._thumbnails.want(self._group, wanted, size)
+        self._thumbnails.want(self._group, wanted, size, exposed=self._auto.on)
 
     def _on_ready(self, group: str, key: Hashable, image: QImage) -> None:
         if group == self._group and isinstance(key, str) and key in self.buttons:
             self.buttons[key].set_image(image)
+            self.buttons[key].exposure = exposure_of(image)
 
     def showEvent(self, event: QShowEvent) -> None:
         """Draw what changed while the row was hidden."""

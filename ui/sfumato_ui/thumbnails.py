@@ -30,16 +30,26 @@ class _Look:
     volume: weakref.ref[Volume] | None
     rest: tuple[Any, ...]
     size: tuple[int, int]
+    exposed: bool
 
     @staticmethod
-    def of(scene: Scene, size: tuple[int, int]) -> _Look:
+    def of(scene: Scene, size: tuple[int, int], exposed: bool = False) -> _Look:
         names = (f.name for f in dataclasses.fields(scene) if f.name != "volume")
         volume = None if scene.volume is None else weakref.ref(scene.volume)
-        return _Look(volume, tuple(getattr(scene, name) for name in names), size)
+        return _Look(volume, tuple(getattr(scene, name) for name in names), size, exposed)
 
     def same(self, other: _Look) -> bool:
         mine, theirs = (look.volume() if look.volume is not None else None for look in (self, other))
-        return mine is theirs and mine is not None and (self.rest, self.size) == (other.rest, other.size)
+        return (
+            mine is theirs
+            and mine is not None
+            and (self.rest, self.size, self.exposed)
+            == (
+                other.rest,
+                other.size,
+                other.exposed,
+            )
+        )
 
 
 class Thumbnails(QObject):
@@ -70,6 +80,7 @@ class Thumbnails(QObject):
         frames: int = 0,
         first: bool = False,
         timed: bool = False,
+        exposed: bool = False,
     ) -> None:
         """Want pictures of scenes, instead of all that this group still wants.
 
@@ -89,15 +100,17 @@ class Thumbnails(QObject):
             Whether they are drawn before those of other groups.
         timed : bool
             Whether the images are to say how long a frame takes (text "seconds").
+        exposed : bool
+            Whether they are to have an automatic exposure, and to say it in stops (text "exposure").
         """
-        looks = {key: _Look.of(scene, size) for key, scene in scenes.items()}
+        looks = {key: _Look.of(scene, size, exposed) for key, scene in scenes.items()}
         known = {key: self._known(group, key, look) for key, look in looks.items()}
         open_wishes = {key: scene for key, scene in scenes.items() if known[key] is None}
         self._wanted[group] = {key: looks[key] for key in open_wishes}
         self._worker.want_thumbnails(
             group,
             [
-                ThumbnailRequest(group, key, scene, size, quality, frames, timed)
+                ThumbnailRequest(group, key, scene, size, quality, frames, timed, exposed)
                 for key, scene in open_wishes.items()
             ],
             first,
@@ -119,7 +132,7 @@ class Thumbnails(QObject):
         """Tell a picture, unless the wish for it was replaced while it came here."""
         wanted = self._wanted.get(request.group, {})
         look = wanted.get(request.key)
-        if look is None or not look.same(_Look.of(request.scene, request.size)):
+        if look is None or not look.same(_Look.of(request.scene, request.size, request.exposed)):
             return
         del wanted[request.key]
         self._drawn[request.group, request.key] = look, image

@@ -22,6 +22,7 @@ from qtpy.QtWidgets import QApplication, QGridLayout, QMainWindow, QSplitter, QT
 from sfumato import Document, Scene
 
 from . import camera_moves
+from .auto_exposure import AutoExposure
 from .autosave import Autosave
 from .bars import ToolStrip, TopBar
 from .compare import ComparePage
@@ -81,8 +82,9 @@ class MainWindow(QMainWindow):
         self.top, self.strip, self.status = TopBar(self.editor), ToolStrip(), StatusLine()
         self.drawer = Drawer()
         self.history = HistoryRow(self.editor, self.thumbnails)
-        self.compare = ComparePage(self.editor, self.viewport, self.thumbnails, self.history)
-        self.light_page = LightPage(self.editor, self.thumbnails)
+        self.exposure = AutoExposure(self.editor, self.thumbnails, self)
+        self.compare = ComparePage(self.editor, self.viewport, self.thumbnails, self.history, self.exposure)
+        self.light_page = LightPage(self.editor, self.thumbnails, self.exposure)
         self.material_page = MaterialPage(self.editor)
         self.material_page.use_thumbnails(self.thumbnails)
         self.view_page = ViewPage(self.editor, self.viewport.clips)
@@ -161,11 +163,15 @@ class MainWindow(QMainWindow):
         self.vtk.trace_wanted.connect(self.files.trace)
         self.view_page.shapes.trace_wanted.connect(self.files.trace)
         self.view_page.view_chosen.connect(self.look)
+        self.view_page.auto.clicked.connect(lambda: self.exposure.ask())
+        self.view_page.automatic.setChecked(self.exposure.on)
+        self.view_page.automatic.toggled.connect(self._set_automatic)
         self.view_page.theme_chosen.connect(self.set_theme)
         self.view_page.scale_bar_chosen.connect(self.viewport.set_scale_bar)
         self.view_page.frames_chosen.connect(self.driver.set_frames)
         self.viewport.clips.added.connect(lambda: self.strip.choose("clip"))
         self.light_page.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
+        self.light_page.own_rigs.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
         self.view_page.shapes.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
         self.viewport.lamp_moved.connect(self._hint_done)
         self.viewport.resized.connect(self.messages.place)
@@ -184,6 +190,7 @@ class MainWindow(QMainWindow):
         self.messages.cancelled.connect(builder.give_up)
         builder.given_up.connect(lambda shown: editor.change("Leave geometry as it was", geometry=shown))
         self.files.opened.connect(self._show_document)
+        self.files.opened.connect(self.exposure.opened)
         self.files.scene_saved.connect(self._show_title)
         self.files.scene_saved.connect(self.autosave.watch)
         self.files.recovered.connect(self.autosave.adopt)
@@ -257,6 +264,12 @@ class MainWindow(QMainWindow):
 
     def _choose_tool(self, name: str) -> None:
         self.viewport.tool = name
+
+    def _set_automatic(self, on: bool) -> None:
+        self.exposure.set_on(on)
+        self.light_page.rigs.refresh()
+        self.light_page.more_rigs.refresh()
+        self.light_page.own_rigs.row.refresh()
 
     def _hint_done(self) -> None:
         if self.viewport.hint:

@@ -32,6 +32,7 @@ def window_commands(window: MainWindow) -> Commands:
         "history": lambda: window.drawer.toggle("history"),
         "compare": lambda: window.drawer.toggle("compare"),
         "vtk": window.strip.vtk.toggle,
+        "exposure": window.exposure.ask,
         "audit": window.light_page.audit.on.toggle,
         "theme": lambda: window.set_theme(_other_theme()),
         "fit": lambda: window.look(""),
@@ -63,6 +64,7 @@ def _possible(window: MainWindow) -> dict[str, Callable[[], bool]]:
         **{f"rig-{n}": partial(_can_be_clicked, window, n) for n in rigs()},
         **{f"technique-{n}": volume for n in techniques()},
         "audit": opened,
+        "exposure": volume,
         "undo": lambda: bool(window.editor.document.undo_label),
         "redo": lambda: bool(window.editor.document.redo_label),
     }

@@ -17,6 +17,7 @@ from typing import Any
 from qtpy.QtCore import QObject, QThread, Signal
 
 from sfumato import GpuError, Scene
+from sfumato.exposure import exposure_for
 from sfumato.techniques.frame import FULL, Quality
 
 from .jobs import (
@@ -254,7 +255,10 @@ class RenderWorker(QObject):
                 for _ in range(request.frames or THUMBNAIL_FRAMES):
                     if not self._add_idle_frame(accumulation, request):
                         return
+                if request.exposed and not self._expose(renderer, request, quality, accumulation):
+                    return
                 image = image_of(accumulation)
+                image.setText("exposure", f"{accumulation.scene.exposure}" if request.exposed else "")
             if request.timed:
                 seconds = self._time_again(renderer, request, quality)
                 if seconds is None:
@@ -272,6 +276,16 @@ class RenderWorker(QObject):
         for _ in accumulation.add_frame():
             if self._stopping or self._view or self._save or not self._still_wanted(request):
                 return False
+        return True
+
+    def _expose(self, renderer: Any, request: ThumbnailRequest, quality: Quality, lit: Any) -> bool:
+        """Expose a thumbnail automatically; False if it was given up for something more urgent."""
+        plain = request.scene.with_(technique="raycast")
+        with _accumulation(renderer, plain, request.size, quality) as unlit:
+            if not self._add_idle_frame(unlit, request):
+                return False
+            stops = exposure_for(lit.foreground(), unlit.foreground())
+        lit.scene = lit.scene.with_(exposure=stops)
         return True
 
     def _time_again(self, renderer: Any, request: ThumbnailRequest, quality: Quality) -> float | None:

@@ -136,8 +136,24 @@ def _scroll_down(hand: Hand, page: QWidget) -> None:
     pause(100)
 
 
+def _own_rig(hand: Hand) -> None:
+    """Keep the lamps under a name."""
+    page = hand.window.light_page
+    own = page.own_rigs
+    page.ensureWidgetVisible(own)
+    hand.click(own.save)
+    _type_into(own.ask.text, "Soft left")
+    QTest.keyClick(own.ask.text, Qt.Key.Key_Return)
+    hand.rest()
+    buttons = own.row.buttons.values()
+    hand.wait_until(lambda: all(not b.image.isNull() for b in buttons), "picture of the own rig")
+    page.ensureWidgetVisible(own)
+    pause(100)
+
+
 def _audit(hand: Hand) -> None:
     audit = hand.window.light_page.audit
+    hand.window.light_page.ensureWidgetVisible(audit)
     hand.click(audit.on, QPoint(10, audit.on.height() // 2))
     hand.rest()
 
@@ -338,6 +354,7 @@ WALK: tuple[Step, ...] = (
     ("solo", "Solo: the other lamp is dark", _solo),
     ("soft", "A larger lamp: softer shadows", _soft),
     ("technique", "The technique's own section, and More", _technique),
+    ("own-rig", "The lamps are kept as a rig of one's own", _own_rig),
     ("audit", "Shadow audit: what shadows darken below a quarter of its light", _audit),
     ("wipe", "Compare: a wipe between the lit and the unlit picture", _wipe),
     ("rig-grid", "Compare: the same view under each rig, with the time of a frame", _rig_grid),

@@ -226,7 +226,7 @@ def _tile(
             yield share[0] + share[1] * done
         if spec.bits == 8:
             return accumulation.picture()
-        return encode16(accumulation.linear(), scene.exposure)
+        return encode16(accumulation.linear(), scene.exposure, scene.white_balance, scene.tone_curve)
     finally:
         accumulation.release()
         renderer.device.collect()

@@ -20,6 +20,7 @@ from .params import Param, check, fields_of, from_json, to_json
 from .paths import changed, plant
 from .transfer import TransferFunction
 from .volume import Volume
+from .white import WHITE
 
 #: Version of the JSON form; a reader refuses newer ones.
 FORMAT_VERSION = 1
@@ -61,6 +62,10 @@ class Scene:
         Linear, straight alpha.
     exposure : float
         In stops: linear values are multiplied by 2 ** exposure before the tone map.
+    white_balance : float
+        Temperature in K of the light that is shown as white; 6504 leaves colours as they are.
+    tone_curve : str
+        ``clip`` cuts off what is brighter than white; ``soft`` bends it below white, from 60 % on.
     shadow_floor : float
         f in [0, 1): a lamp's visibility V counts as max(V, f) wherever it falls; 0 leaves shadows as they are.
     frames : int
@@ -104,6 +109,30 @@ class Scene:
         float,
         Param("Brightness in stops", label="Exposure", unit="stops", ge=-16, le=16, soft=(-3, 3), tab="view"),
     ] = 0.0
+    white_balance: Annotated[
+        float,
+        Param(
+            "Temperature of the light that is shown as white; lower makes the picture bluer",
+            label="White balance",
+            unit="K",
+            ge=2000,
+            le=20000,
+            soft=(2500, 12000),
+            source="CIE 159:2004, Bradford",
+            tab="view",
+            level="more",
+        ),
+    ] = WHITE
+    tone_curve: Annotated[
+        str,
+        Param(
+            "What is brighter than white: clip cuts it off, soft bends it below white from 60 % on",
+            label="Tone curve",
+            choices=("clip", "soft"),
+            tab="view",
+            level="more",
+        ),
+    ] = "clip"
     frames: Annotated[
         int, Param("Jittered frames accumulated in a still picture", label="Frames", ge=1, le=1024)
     ] = 1

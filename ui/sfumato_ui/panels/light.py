@@ -11,12 +11,15 @@ from sfumato.scene.light import shining
 from sfumato.techniques import techniques
 
 from .. import light_moves
+from ..auto_exposure import AutoExposure
 from ..dial import MOVE, SOFTEN, LightDial
 from ..editing import Editor
 from ..generated import ChoiceBox, ParamControl, bind_slider, controls_for, labelled, slider_for, tooltip_of
 from ..lamp_place import LampForm, LampMore, LampPlace, radius_slider, show_radius
+from ..lamp_temperature import LampTemperature
 from ..lamp_tools import LampTools
 from ..lamps import LampRow
+from ..own_rigs_row import OwnRigsRow
 from ..rigs_row import RigButton, RigsRow
 from ..section import Section
 from ..shadow_audit import ShadowAudit
@@ -32,7 +35,7 @@ class LightPage(Page):
     #: The technique's controls were made anew.
     rebuilt = Signal()
 
-    def __init__(self, editor: Editor, thumbnails: Thumbnails) -> None:
+    def __init__(self, editor: Editor, thumbnails: Thumbnails, auto: AutoExposure) -> None:
         super().__init__()
         self._editor = editor
         self.lamps = LampRow(editor)
@@ -45,7 +48,10 @@ class LightPage(Page):
         )
         self.place, self.form, self.lamp_more = LampPlace(editor), LampForm(editor), LampMore(editor)
         self.radius = radius_slider(editor)
-        self.rigs, self.more_rigs = RigsRow(editor, thumbnails), RigsRow(editor, thumbnails, "more rigs")
+        self.rigs = RigsRow(editor, thumbnails, auto)
+        self.more_rigs = RigsRow(editor, thumbnails, auto, "more rigs")
+        self.own_rigs = OwnRigsRow(editor, thumbnails, auto)
+        self.temperature = LampTemperature(editor)
         self.technique = self._technique_menu()
         self.own = Section("", "technique")
         self.more = Section("More", "light_more")
@@ -191,11 +197,12 @@ class LightPage(Page):
 
     def _show_light(self) -> None:
         light = self._editor.light
-        for widget in (self.tilt, self.rotation, self.aperture, self.attached):
+        for widget in (self.tilt, self.rotation, self.aperture, self.attached, self.temperature):
             widget.setEnabled(light is not None)
         if light is None:
             return
         self._show_place(light)
+        self.temperature.show_light(light)
         self.tilt.slider.set_pieces(light_moves.tilt_ranges(light.aperture))
         self.tilt.set_number(light.tilt)
         self.rotation.set_number(light.rotation if light.rotation == 360 else light.rotation % 360)
@@ -258,7 +265,7 @@ class LightPage(Page):
             text = "This technique takes lamps with a place for parallel light from there."
         self.note.setText(text)
         self.note.setVisible(bool(text))
-        for row in (self.rigs, self.more_rigs):
+        for row in (self.rigs, self.more_rigs, self.own_rigs):
             if scene.volume is None:
                 row.set_reason("Open a volume to see the rigs on it.")
             else:
@@ -271,9 +278,11 @@ class LightPage(Page):
         rest = controls_for(fields, "more", self._editor, "technique.")
         self.attached.setParent(self)
         self.lamp_more.setParent(self)
+        self.temperature.setParent(self)
         self.floor.setParent(self)
         self.audit.setParent(self)
         self.more_rigs.setParent(self)
+        self.own_rigs.setParent(self)
         self.own.clear()
         self.more.clear()
         self.own.set_title(title)
@@ -281,6 +290,8 @@ class LightPage(Page):
         for control in essential:
             self.own.add(control)
         self.more.add(self.more_rigs)
+        self.more.add(self.own_rigs)
+        self.more.add(self.temperature)
         self.more.add(self.lamp_more)
         self.more.add(labelled("Lamp fixed to", self.attached))
         for control in rest:

@@ -24,12 +24,13 @@ from ..bindings import explain
 from ..clip_controls import ClipControls, CropControls
 from ..clip_planes import ClipPlanes
 from ..editing import Editor
-from ..generated import ChoiceBox, bind_slider, labelled, slider_for
+from ..generated import ChoiceBox, ParamControl, bind_slider, labelled, slider_for
 from ..geometry_controls import GeometryControls
 from ..jobs import STILL_SECONDS
 from ..quality import QUALITIES, chosen_quality, remember_quality
 from ..section import Section
 from ..settings import settings
+from ..sliders import LabelledSlider
 from ..theme import THEMES, current_theme
 from .page import Page
 
@@ -69,6 +70,17 @@ class ViewPage(Page):
         self.more = Section("More", "view_more")
         self.quality = ChoiceBox()
         self.theme = ChoiceBox()
+        self.auto = QPushButton("Auto")
+        explain(
+            self.auto, "Automatic exposure: bright parts get the brightness of their own colour", "exposure"
+        )
+        self.automatic = QCheckBox("Automatic exposure")
+        self.automatic.setToolTip(
+            "Expose when a volume is opened or a rig is chosen; never while a lamp is moved"
+        )
+        known = fields_of(Scene)
+        self.white = ParamControl(known["white_balance"], editor, "white_balance")
+        self.tone = ParamControl(known["tone_curve"], editor, "tone_curve")
         self.scale_bar = QCheckBox("Scale bar")
         self.scale_bar.setChecked(bool(settings().value("view/scale_bar", False, type=bool)))
         # Without clip planes all of it fits into a window of 1280 x 720.
@@ -83,9 +95,12 @@ class ViewPage(Page):
         self.add(self.crop)
         self.add(self.shapes)
         self.add_heading("Picture")
-        self.add(self.exposure)
+        self.add(_beside(self.exposure, self.auto))
         self.add(self._background_row())
         self.add(self.more)
+        self.more.add(self.automatic)
+        self.more.add(self.white)
+        self.more.add(self.tone)
         self.more.add(self.scale_bar)
         self.more.add(self._quality_row())
         self.more.add(self.step)
@@ -187,6 +202,9 @@ class ViewPage(Page):
         self.crop.refresh()
         self.shapes.refresh()
         self.exposure.set_number(scene.exposure)
+        self.auto.setEnabled(scene.volume is not None)
+        self.white.show_value()
+        self.tone.show_value()
         self.step.set_number(scene.step)
         for button, color in zip(self.background, BACKGROUNDS.values(), strict=True):
             button.setChecked(color == scene.background)
@@ -207,3 +225,14 @@ class ViewPage(Page):
             if orthographic
             else "Needs an orthographic view: in perspective, what is nearer is larger"
         )
+
+
+def _beside(slider: LabelledSlider, button: QPushButton) -> QWidget:
+    """Return a slider and a button that sets it."""
+    row = QWidget()
+    layout = QHBoxLayout(row)
+    layout.setContentsMargins(0, 0, 0, 0)
+    layout.setSpacing(8)
+    layout.addWidget(slider, 1)
+    layout.addWidget(button, 0, Qt.AlignmentFlag.AlignTop)
+    return row
