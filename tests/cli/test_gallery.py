@@ -12,7 +12,7 @@ from PIL import Image
 
 from sfumato import Light, Scene
 from sfumato_app.gallery.figure import Cuts, Figure
-from sfumato_app.gallery.figures import FIGURES
+from sfumato_app.gallery.figures import FIGURES, combined
 from sfumato_app.gallery.hero import hero_panels
 
 LOCAL = (3, 4, 10)
@@ -20,6 +20,8 @@ PAPER_FIGURES = (1, 8, 9, 10, 11, 12, 13, 14)
 COUNTS = {1: 4, 8: 3, 9: 2, 10: 4, 11: 4, 12: 4, 13: 4, 14: 2}
 #: Of Schlegel2011: numbers, and how many panels we make of each.
 EXTINCTION = {1: 4, 2: 2, 4: 2, 6: 2, 8: 2, 9: 2, 10: 4, 11: 4, 12: 2}
+#: Of Schott2012.
+COMBINED = {1: 2, 2: 4, 5: 3, 6: 6, 7: 2, 8: 2}
 
 
 def scenes(figure: Figure) -> list[Scene]:
@@ -58,11 +60,25 @@ def test_figure_of_extinction_is_whole(number: int) -> None:
     assert all(Scene.from_json(scene.to_json(), scene.volume) == scene for scene in scenes(figure))
 
 
+@pytest.mark.parametrize("number", COMBINED)
+def test_figure_of_combined_is_whole(number: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where there are no real data: the pipe takes their place."""
+    for name in ("TRACTS", "SCAN", "CAROTID"):
+        monkeypatch.setattr(combined, name, Path("nowhere"))
+    figure = FIGURES[f"schott2012-{number}"]()
+    assert (figure.paper, figure.number) == ("Schott2012", number)
+    assert len(scenes(figure)) == COMBINED[number]
+    assert figure.caption.endswith(".")
+    assert {scene.technique_id for scene in scenes(figure)} == {"combined"}
+    assert all(scene.geometry for scene in scenes(figure))
+
+
 def test_numbers_are_the_papers() -> None:
     assert tuple(FIGURES) == (
         *PAPER_FIGURES,
         *(f"schlegel2011-{n}" for n in EXTINCTION),
         *(f"hernell2007-{n}" for n in LOCAL),
+        *(f"schott2012-{n}" for n in COMBINED),
     )
 
 

@@ -30,6 +30,13 @@ _PAPERS = {
 Figures of Hernell2007, *Efficient Ambient and Emissive Tissue Illumination using Local Occlusion in Multiresolution
 Volume Rendering*, made again with our samples by `local-occlusion`.
 """,
+    "Schott2012": """
+# Geometry and volume under one light
+
+Figures of [Schott2012](https://doi.org/10.1109/PacificVis.2012.6183588), *Combined Surface and Volumetric Occlusion
+Shading*, made again by `combined`: the mixing pipe is our own sample; fibre tracts (Stanford HARDI) and blood flow are
+real data where they lie beside the project, and the pipe takes their place elsewhere.
+""",
     "Schlegel2011": """
 # Extinction-based shading
 

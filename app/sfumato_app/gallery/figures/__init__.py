@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..figure import Figure
-from . import extinction_places, extinction_scans, extinction_terms, local
+from . import combined, extinction_places, extinction_scans, extinction_terms, local
 from .bonsai import figure_14
 from .cone import figure_8
 from .fish import figure_9
@@ -36,4 +36,10 @@ FIGURES: dict[int | str, Callable[[], Figure]] = {
     "hernell2007-3": local.figure_3,
     "hernell2007-4": local.figure_4,
     "hernell2007-10": local.figure_10,
+    "schott2012-1": combined.figure_1,
+    "schott2012-2": combined.figure_2,
+    "schott2012-5": combined.figure_5,
+    "schott2012-6": combined.figure_6,
+    "schott2012-7": combined.figure_7,
+    "schott2012-8": combined.figure_8,
 }
