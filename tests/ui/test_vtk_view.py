@@ -5,7 +5,12 @@ Needs a screen with OpenGL for Qt (X or Xvfb, as ./run test has it).
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -130,6 +135,23 @@ def test_a_point_lies_in_the_same_place_in_both(
     points = np.random.default_rng(0).uniform(0, 40, (20, 3))
     ours = PictureView(camera, stage.view.width(), stage.view.height()).places(points)
     assert np.abs(places_in_vtk(stage, points) - ours).max() < 1
+
+
+@pytest.mark.parametrize(
+    "scale", [1.5, pytest.param(1.0, marks=pytest.mark.slow), pytest.param(2.0, marks=pytest.mark.slow)]
+)
+def test_both_views_agree_within_a_pixel_at_each_pixel_ratio(scale: float, tmp_path: Any) -> None:
+    """Projected points, and a ball found in both pictures; two sizes of the window, both projections."""
+    env = {**os.environ, "QT_SCALE_FACTOR": str(scale), "SFUMATO_SETTINGS": str(tmp_path)}
+    run = subprocess.run(
+        [sys.executable, str(Path(__file__).with_name("link_walk.py"))],
+        env=env, capture_output=True, text=True, timeout=240, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    found = json.loads(run.stdout.splitlines()[-1])
+    assert found["ratio"] == scale
+    assert found["projected"] < 1
+    assert found["seen"] < 1.5, "of pixels, in which edges of the ball are found"
 
 
 def test_moves_in_the_vtk_view_move_the_lit_view(both: MainWindow, hand: Any, qtbot: Any) -> None:

@@ -89,7 +89,7 @@ def figure_1() -> Figure:
 def figure_2() -> Figure:
     """Show what casts shadows on what, one more from picture to picture."""
     off = dict.fromkeys(SWITCHES, False)
-    steps = [
+    steps: list[tuple[dict[str, Any], str]] = [
         ({**off, "volume_on_volume": True, "vicinity": 0.0}, "volume on volume"),
         ({**off, "volume_on_volume": True, "geometry_on_geometry": True}, "... and geometry on geometry"),
         ({"volume_on_geometry": False}, "... and geometry on volume"),
@@ -126,7 +126,7 @@ def _tracts_alone() -> Scene:
     low, high = _tracts().bounds
     middle = tuple(((low + high) / 2).tolist())
     size = float((high - low)[1:].max())
-    return scene.with_(camera=look(middle, 0.85 * size, turn=68, lift=16))  # type: ignore[arg-type]
+    return scene.with_(camera=look(middle, 0.85 * size, turn=68, lift=16))
 
 
 def figure_5() -> Figure:

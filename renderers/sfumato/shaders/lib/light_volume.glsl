@@ -38,9 +38,13 @@ float near_cover(sampler2D cover, int l, vec3 at) {
     float s = at.z * (u_cover_slabs[l] + 1.0) - 0.5, begin = max(s - u_cover_way[l], 0.0), covered = 0.0;
     vec2 size = vec2(u_cover_size[l]), texel = clamp(at.xy * size, vec2(0.5), size - 0.5);
     vec2 picture = vec2(textureSize(cover, 0));
-    for (int j = int(begin); float(j) < min(s, u_cover_slabs[l]); ++j) {
-        vec2 corner = vec2(j % u_cover_columns[l], j / u_cover_columns[l]) * size;
-        covered += textureLod(cover, (corner + texel) / picture, 0.0).r * (min(s, float(j + 1)) - max(begin, float(j)));
+    // Which slab's corner: by floats, since software renderers divide integers one by one.
+    float last = min(s, u_cover_slabs[l]), columns = float(u_cover_columns[l]);
+    vec2 scale = 1.0 / picture;
+    for (float j = floor(begin); j < last; j += 1.0) {
+        float row = floor((j + 0.5) / columns);
+        vec2 corner = vec2(j - row * columns, row) * size;
+        covered += textureLod(cover, (corner + texel) * scale, 0.0).r * (min(s, j + 1.0) - max(begin, j));
     }
     return 1.0 - u_cover_opacity * min(covered, 1.0);
 }

@@ -65,7 +65,9 @@ float near_cover(sampler2D cover, int l, int i, int at, vec2 texel) {
         // In front light, layer `at` knows what lies before slab `at`; in light from behind, what lies behind it.
         int j = at > i ? i + k : i - k;
         vec2 there = clamp(inside + vec2(base - ((u_shear[l] * (j + u_rear[l])) >> 15)), vec2(0.5), u_lattice_size - 0.5);
-        vec2 corner = vec2(j % u_cover_columns[l], j / u_cover_columns[l]) * u_lattice_size;
+        // By floats: software renderers divide integers one by one.
+        float columns = float(u_cover_columns[l]), row = floor((float(j) + 0.5) / columns);
+        vec2 corner = vec2(float(j) - row * columns, row) * u_lattice_size;
         covered += textureLod(cover, (corner + there) / picture, 0.0).r;
     }
     return 1.0 - u_cover_opacity * min(covered, 1.0);

@@ -78,16 +78,16 @@ class CombinedParams(OcclusionParams):
     vicinity_samples: Annotated[
         int,
         Param(
-            "Points of the Poisson disc by which contact shadows are found",
+            "Points of the Poisson disc by which a frame finds contact shadows; each frame turns it",
             label="Contact samples",
             ge=1,
             le=118,
-            soft=(8, 118),
+            soft=(4, 118),
             source="Schott2012, 3.1.5",
             tab="light",
             level="more",
         ),
-    ] = 40
+    ] = 16
     vicinity_bias: Annotated[
         float,
         Param(

@@ -31,11 +31,13 @@ CELL_TEXELS = 0.5
 #: Edge in texels of the blocks that tell a sweep where geometry stands.
 BLOCK_TEXELS = 8.0
 #: Triangles, and samples of them, that are worked on at a time.
-CHUNK, CHUNK_SAMPLES = 1 << 17, 1 << 20
+CHUNK, CHUNK_SAMPLES = 1 << 16, 1 << 18
 #: Samples in place of one, of triangles larger than a cell.
 DENSER = 2
-#: Most samples of a mesh; larger ones get coarser cells.
+#: Most samples of a mesh; larger ones are taken apart less finely.
 MAX_SAMPLES = 24_000_000
+#: The same of tubes' axes.
+MAX_AXIS_SAMPLES = 3_000_000
 #: Tubes up to this radius, in cells, are put together from their axes.
 THIN = 0.75
 #: What the sums of a tube are multiplied by.
@@ -121,16 +123,23 @@ def _gather(frame: Frame, item: Shown, cell: float) -> Generator[float, None, np
     dims = np.ceil((mesh.bounds[1] + cell - low) / cell).astype(np.int64) + 1
     thin = mesh.axes is not None and float(mesh.axes[:, 6].max(initial=0)) <= THIN * cell
     pieces = mesh.axes if thin and mesh.axes is not None else mesh.triangles
+    longest = _longest_piece(mesh.axes, cell) if thin and mesh.axes is not None else cell
     for first in range(0, len(pieces), CHUNK):
         if thin:
-            parts: Iterator[np.ndarray] = _axis_samples(pieces[first : first + CHUNK], middle, cell)
+            parts: Iterator[np.ndarray] = _axis_samples(pieces[first : first + CHUNK], middle, longest)
         else:
             parts = _samples((mesh.points[pieces[first : first + CHUNK]] - middle).astype(np.float32), cell)
         for part in parts:
             part = _kept(frame, part, mesh) if item.clipped else part
             rows.append(_by_cell(part, low - middle, dims, cell, summed=thin))
             yield 0.0
-    return _by_cell(np.concatenate(rows), low - middle, dims, cell, summed=True)
+    return (yield from _merged(np.concatenate(rows), low - middle, dims, cell))
+
+
+def _longest_piece(axes: np.ndarray, cell: float) -> float:
+    """Return how long the pieces may be into which tubes are taken apart, in mm."""
+    total = float(np.linalg.norm(axes[:, 3:6] - axes[:, :3], axis=1).sum())
+    return max(cell, total / MAX_AXIS_SAMPLES)
 
 
 def _axis_samples(axes: np.ndarray, middle: np.ndarray, cell: float) -> Iterator[np.ndarray]:
@@ -203,18 +212,23 @@ def _kept(frame: Frame, rows: np.ndarray, mesh: Mesh) -> np.ndarray:
     return np.asarray(rows[kept])
 
 
-def _by_cell(
-    rows: np.ndarray, low: np.ndarray, dims: np.ndarray, cell: float, summed: bool = False
-) -> np.ndarray:
+def _cell_numbers(rows: np.ndarray, low: np.ndarray, dims: np.ndarray, cell: float) -> np.ndarray:
+    """Return the number of the cell in which each row lies."""
+    at = np.clip(np.floor((rows[:, 1:4] / rows[:, :1] - low) / cell).astype(np.int64), 0, dims - 1)
+    return np.asarray((at[:, 2] * dims[1] + at[:, 1]) * dims[0] + at[:, 0])
+
+
+def _begins(keys: np.ndarray) -> np.ndarray:
+    return np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
+
+
+def _by_cell(rows: np.ndarray, low: np.ndarray, dims: np.ndarray, cell: float, *, summed: bool) -> np.ndarray:
     """Sum rows of samples (or of sums) that lie in one cell."""
     if not len(rows):
         return np.empty((0, _COLUMNS), np.float32)
-    at = np.floor((rows[:, 1:4] / rows[:, :1] - low) / cell).astype(np.int64)
-    at = np.clip(at, 0, dims - 1)
-    keys = (at[:, 2] * dims[1] + at[:, 1]) * dims[0] + at[:, 0]
+    keys = _cell_numbers(rows, low, dims, cell)
     order = np.argsort(keys, kind="stable")
-    rows, keys = rows[order], keys[order]
-    starts = np.flatnonzero(np.r_[True, keys[1:] != keys[:-1]])
+    rows, starts = np.take(rows, order, axis=0), _begins(keys[order])
     if not summed:
         n = rows[:, 4:7]
         x, y, z = n.T / np.maximum(rows[:, 0], 1e-30) ** 0.5
@@ -222,14 +236,50 @@ def _by_cell(
     return np.add.reduceat(rows, starts, axis=0, dtype=np.float64).astype(np.float32)
 
 
+def _merged(
+    rows: np.ndarray, low: np.ndarray, dims: np.ndarray, cell: float
+) -> Generator[float, None, np.ndarray]:
+    """Sum rows of sums that lie in one cell, piece by piece: the window's thread is to have its turn."""
+    if not len(rows):
+        return np.empty((0, _COLUMNS), np.float32)
+    keys = _cell_numbers(rows, low, dims, cell)
+    order = np.argsort(keys)
+    starts, merged = _begins(keys[order]), []
+    yield 0.0
+    ends = np.append(starts[1:], len(rows))
+    first = 0
+    while first < len(starts):
+        last = max(first + 1, int(np.searchsorted(ends, starts[first] + CHUNK_SAMPLES, side="right")))
+        begin, end = int(starts[first]), int(ends[last - 1])
+        part = np.take(rows, order[begin:end], axis=0)
+        merged.append(
+            np.add.reduceat(part, starts[first:last] - begin, axis=0, dtype=np.float64).astype(np.float32)
+        )
+        first = last
+        yield 0.0
+    return np.concatenate(merged)
+
+
 def _upload(frame: Frame, item: Shown, rows: np.ndarray, cell: float) -> Surfels:
     mesh = item.mesh
     data = np.concatenate([rows[:, 1:4] / np.maximum(rows[:, :1], 1e-30), rows[:, 4:]], axis=1)
     middle, edge = mesh.bounds.mean(axis=0), cell / CELL_TEXELS * BLOCK_TEXELS
-    blocks = np.unique(np.floor(data[:, :3] / edge).astype(np.int64), axis=0)
+    blocks = _distinct(np.floor(data[:, :3] / edge).astype(np.int64))
     with frame.device.checked(f"{len(data)} shadow casters"):
         buffer = frame.device.ctx.buffer(np.ascontiguousarray(data, np.float32) if len(data) else b"\0" * 48)
     return Surfels(buffer, len(data), middle, (blocks + 0.5) * edge + middle, edge / 2, _closed(item))
+
+
+def _distinct(cells: np.ndarray) -> np.ndarray:
+    """Return each row of integers, shape (n, 3), once."""
+    if not len(cells):
+        return cells
+    low = cells.min(axis=0)
+    dims = cells.max(axis=0) - low + 1
+    at = cells - low
+    keys = np.unique((at[:, 2] * dims[1] + at[:, 1]) * dims[0] + at[:, 0])
+    places = np.stack([keys % dims[0], keys // dims[0] % dims[1], keys // (dims[0] * dims[1])], axis=1)
+    return np.asarray(places + low)
 
 
 def _closed(item: Shown) -> bool:
