@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from sfumato import Light, Scene, TransferFunction, Volume
+from sfumato.export.linear import write_linear
 from sfumato.renderer import FULL, Renderer
 from sfumato.techniques.local_occlusion import passes, resolve
 from sfumato.techniques.local_occlusion.params import LocalOcclusionParams
@@ -56,17 +58,27 @@ def linear(renderer: Renderer, scene: Scene, **changes: Any) -> np.ndarray:
         job.release()
 
 
-def test_the_lamps_shadows_alone_are_those_of_cone(renderer: Renderer, scene: Scene) -> None:
-    alone = linear(renderer, scene, lamps="shadows", mode="mix", share=1.0)
-    np.testing.assert_allclose(alone, linear(renderer, scene.with_(technique="cone")), atol=1e-6)
+SHADOWS = pytest.mark.parametrize("shadows", ["shadows", "multidirectional"])
 
 
-def test_lamps_and_the_light_around_are_mixed_or_multiplied(renderer: Renderer, scene: Scene) -> None:
-    around = linear(renderer, scene, lamps="shadows", share=0.0)
-    lamps = linear(renderer, scene, lamps="shadows", share=1.0)
-    mixed = linear(renderer, scene, lamps="shadows", share=0.25)
+@SHADOWS
+def test_the_lamps_shadows_alone_are_those_of_their_technique(
+    renderer: Renderer, scene: Scene, shadows: str
+) -> None:
+    alone = linear(renderer, scene, lamps=shadows, mode="mix", share=1.0)
+    own = scene.with_(technique={"shadows": "cone"}.get(shadows, shadows))
+    np.testing.assert_allclose(alone, linear(renderer, own), atol=1e-6)
+
+
+@SHADOWS
+def test_lamps_and_the_light_around_are_mixed_or_multiplied(
+    renderer: Renderer, scene: Scene, shadows: str
+) -> None:
+    scene = scene.with_({"technique.lamps": shadows, "technique.mode": "mix"})
+    around, lamps = linear(renderer, scene, share=0.0), linear(renderer, scene, share=1.0)
+    mixed = linear(renderer, scene, share=0.25)
     np.testing.assert_allclose(mixed, 0.75 * around + 0.25 * lamps, atol=1e-5)
-    product = linear(renderer, scene, lamps="shadows", mode="product", brightness=1.0, bias=0.0)
+    product = linear(renderer, scene, mode="product", brightness=1.0, bias=0.0)
     assert (product <= lamps + 1e-5).all()
     assert product.mean() < 0.9 * lamps.mean()
 
@@ -100,7 +112,7 @@ def test_light_comes_by_and_by_and_ends_as_if_it_had_been_waited_for(
     job.release()
 
 
-@pytest.mark.parametrize("lamps", ["diffuse", "shadows"])
+@pytest.mark.parametrize("lamps", ["diffuse", "shadows", "multidirectional"])
 def test_progress_never_goes_back(renderer: Renderer, scene: Scene, lamps: str) -> None:
     renderer.device.store.clear()
     job = renderer.begin(scene.with_({"technique.lamps": lamps}), SIZE)
@@ -146,7 +158,10 @@ def test_a_transfer_function_that_is_edited_all_the_time_ends_as_a_fresh_start(s
         fresh.close()
 
 
-@pytest.mark.parametrize("lamps", ["diffuse", pytest.param("shadows", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "lamps",
+    ["diffuse", *(pytest.param(name, marks=pytest.mark.slow) for name in ("shadows", "multidirectional"))],
+)
 def test_a_volume_that_does_not_fit_is_shown_by_its_blocks(renderer: Renderer, lamps: str) -> None:
     n = 96
     z, y, x = np.mgrid[:n, :n, :n] + 0.5
@@ -190,3 +205,29 @@ def test_resolved_light_is_that_of_the_packed_blocks(
     assert slow.max() > 0.3
     # Light is kept in halves of a float: 11 bits.
     assert np.abs(fast - slow).max() < 2e-3 * slow.max()
+
+
+def test_light_above_white_is_kept_through_to_the_tone_map(
+    renderer: Renderer, scene: Scene, tmp_path: Path
+) -> None:
+    shining = scene.with_({"transfer.points.1.emission": (6.0, 3.0, 0.5), "technique.lamps": "off"})
+    job = renderer.begin(shining, SIZE)
+    for _ in job.add_frame():
+        pass
+    shown, picture = job.linear(), job.picture()
+    job.release()
+    assert shown[..., 0].max() > 3
+    assert picture[..., 0].max() == 255
+    # Four stops less bring back what the tone map clips.
+    dim = renderer.begin(shining.with_(exposure=-4.0), SIZE)
+    for _ in dim.add_frame():
+        pass
+    darker = dim.picture()
+    dim.release()
+    assert 60 < darker[..., 0].max() < 255
+    assert darker[..., 0].max() > darker[..., 1].max() > darker[..., 2].max()
+    # What lies near is lit by more than the display's white as well: here it shines in the gathering alone.
+    assert linear(renderer, shining, emission="gathering").max() > 1.5
+    target = tmp_path / "light.npy"
+    write_linear(target, shown)
+    np.testing.assert_array_equal(np.load(target), shown)

@@ -55,9 +55,9 @@ class LocalOcclusionParams(TechniqueParams):
     lamps: Annotated[
         str,
         Param(
-            "What the lamps add: nothing, shading of surfaces that face them, or shadows as in cone",
+            "What the lamps add: nothing, shading of what faces them, or shadows as in cone or multidirectional",
             label="Lamps",
-            choices=("off", "diffuse", "shadows"),
+            choices=("off", "diffuse", "shadows", "multidirectional"),
             source="Hernell2007, Fig. 10",
             stale="program",
             tab="light",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 from typing import cast
 
@@ -26,6 +26,8 @@ from ..marcher import (
     set_view,
     visible_box,
 )
+from ..multidirectional.params import MultidirectionalParams
+from ..multidirectional.passes import Beside, OcclusionPainter
 from .blocks import Blocks, is_whole, prepare_blocks
 from .gather import Gatherer, LightMap
 from .pyramid import EDGE
@@ -50,6 +52,7 @@ class LocalOcclusionPainter:
         self.gatherer = Gatherer(device)
         self.resolver = Resolver(device)
         self.shadows = LampShadows(device)
+        self.swept = OcclusionPainter(device)
         self._drawing = SECONDS
 
     def paint(self, frame: Frame) -> Generator[float, None, None]:
@@ -75,6 +78,10 @@ class LocalOcclusionPainter:
         if resolved is not None:
             for done in self.resolver.resolve(frame, blocks, light, resolved):
                 yield GATHERED + (RESOLVED - GATHERED) * done
+        if frame.params.lamps == "multidirectional" and frame.scene.active_lights:
+            yield from self._draw_swept(frame, material, blocks, resolved or light)
+            self._drawing = time.perf_counter() - began
+            return
         program = yield from self._program(frame, material, blocks, resolved or light)
         self.marcher.begin(frame)
         for done in self.marcher.march(frame, program, (0, 1 << 24), box, True):
@@ -88,9 +95,8 @@ class LocalOcclusionPainter:
     ) -> Generator[float, None, Program]:
         """Set up the ray caster; sweeps lamps that cast shadows, if they have to be."""
         params, active = frame.params, len(frame.scene.active_lights)
-        mode = PRODUCT if params.mode == "product" else MIX
         variant = Variant(
-            shading=LOCAL, local=mode, joined=params.joined, adaptive=params.adaptive,
+            shading=LOCAL, local=combination(frame), joined=params.joined, adaptive=params.adaptive,
             resolved=isinstance(light, ResolvedLight),
         )  # fmt: skip
         lamps = None
@@ -107,6 +113,18 @@ class LocalOcclusionPainter:
         bind_light(program, frame, blocks, light)
         return program
 
+    def _draw_swept(
+        self, frame: Frame, material: Material, blocks: Blocks, light: LightMap | ResolvedLight
+    ) -> Iterator[float]:
+        """Draw a frame with the lamps of `multidirectional` beside the light around."""
+        beside = Beside(
+            combination(frame), frame.params.joined, isinstance(light, ResolvedLight),
+            lambda program: bind_light(program, frame, blocks, light),
+        )  # fmt: skip
+        swept = replace(frame, scene=frame.scene.with_(technique=MultidirectionalParams()))
+        for done in self.swept.draw(swept, shown_emission(frame, material), beside):
+            yield RESOLVED + (1 - RESOLVED) * done
+
     def _bind_lamps(self, program: Program, frame: Frame, lamps: Lamps | None) -> None:
         """Set the lamps and the view."""
         program.set(u_ambient=0.0, **light_uniforms(frame, lights_towards(frame)))
@@ -121,6 +139,7 @@ class LocalOcclusionPainter:
         self.gatherer.release()
         self.resolver.release()
         self.shadows.release()
+        self.swept.release()
 
 
 def later(work: Generator[float, None, Lamps], start: float, end: float) -> Generator[float, None, Lamps]:
@@ -131,6 +150,11 @@ def later(work: Generator[float, None, Lamps], start: float, end: float) -> Gene
         except StopIteration as stop:
             return cast(Lamps, stop.value)
         yield start + (end - start) * min(2 * done, 1.0)
+
+
+def combination(frame: Frame) -> int:
+    """Return how lamps and the light around are combined, as `Variant.local`."""
+    return PRODUCT if frame.params.mode == "product" else MIX
 
 
 def shown_emission(frame: Frame, material: Material) -> Material:

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Generator, Hashable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Generator, Hashable, Iterator
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import moderngl
@@ -50,6 +50,26 @@ WHOLE_BYTES = 192 << 20
 BYTES_PER_TEXEL = 2
 #: Sweep passes between two looks at whether a newer scene is there.
 PASSES_PER_PIECE = 16
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Light of another technique that is drawn beside that of the lamps.
+
+    Attributes
+    ----------
+    local : int
+        How both are combined, as `Variant.local`.
+    joined, resolved : bool
+        As `Variant`'s.
+    bind : callable
+        Gives the program what it needs to read it.
+    """
+
+    local: int
+    joined: bool
+    resolved: bool
+    bind: Callable[[Program], None]
 
 
 @dataclass
@@ -109,7 +129,10 @@ class OcclusionPainter:
 
     def paint(self, frame: Frame) -> Generator[float, None, None]:
         """Draw a frame, yielding progress after each bounded piece."""
-        material = prepare_material(frame)
+        yield from self.draw(frame, prepare_material(frame))
+
+    def draw(self, frame: Frame, material: Material, beside: Beside | None = None) -> Iterator[float]:
+        """Draw a frame of a material, with light from elsewhere beside the lamps' if there is some."""
         corners = visible_corners(frame, material)
         box = (0, 0, 0, 0) if corners is None else pixel_box(frame, corners)
         if corners is None or is_empty(box):
@@ -117,7 +140,7 @@ class OcclusionPainter:
             yield 1.0
             return
         plan = self._plan(frame, material, corners, box)
-        program = self._prepare(frame, plan)
+        program = self._prepare(frame, plan, beside)
         self.marcher.begin(frame)
         if plan.whole:
             layers = yield from self._whole(frame, plan)
@@ -189,14 +212,17 @@ class OcclusionPainter:
             plan.fit(self.device)
         return plan
 
-    def _prepare(self, frame: Frame, plan: Plan) -> Program:
+    def _prepare(self, frame: Frame, plan: Plan, beside: Beside | None = None) -> Program:
         """Set up the march program, the sweepers and the textures."""
         params, lamps = frame.params, plan.lamps
         literal = params.occlusion != "extinction"
-        program = self.marcher.program(
-            Variant(True, SWEPT, len(lamps), literal, plan.near, params.specular > 0), plan.material
-        )
+        variant = Variant(True, SWEPT, len(lamps), literal, plan.near, params.specular > 0)
+        if beside is not None:
+            variant = replace(variant, local=beside.local, joined=beside.joined, resolved=beside.resolved)
+        program = self.marcher.program(variant, plan.material)
         bind_material(program, plan.material, frame)
+        if beside is not None:
+            beside.bind(program)
         set_view(program, frame, plan.stack)
         program.set(u_ambient=params.ambient, u_specular=params.specular, u_shininess=params.shininess)
         if not lamps:
