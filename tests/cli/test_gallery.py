@@ -11,11 +11,12 @@ import pytest
 from PIL import Image
 
 from sfumato import Light, Scene
-from sfumato_app.gallery.figure import Cuts, Figure
+from sfumato_app.gallery.figure import Cuts, Difference, Figure
 from sfumato_app.gallery.figures import FIGURES, combined
 from sfumato_app.gallery.hero import hero_panels
+from sfumato_app.gallery.sheet import draw_difference
 
-LOCAL = (3, 4, 10)
+LOCAL = (1, 3, 4, 6, 7, 8, 9, 10)
 PAPER_FIGURES = (1, 8, 9, 10, 11, 12, 13, 14)
 COUNTS = {1: 4, 8: 3, 9: 2, 10: 4, 11: 4, 12: 4, 13: 4, 14: 2}
 #: Of Schlegel2011: numbers, and how many panels we make of each.
@@ -71,6 +72,27 @@ def test_figure_of_combined_is_whole(number: int, monkeypatch: pytest.MonkeyPatc
     assert figure.caption.endswith(".")
     assert {scene.technique_id for scene in scenes(figure)} == {"combined"}
     assert all(scene.geometry for scene in scenes(figure))
+
+
+@pytest.mark.parametrize("number", LOCAL)
+def test_figure_of_local_occlusion_is_whole(number: int) -> None:
+    figure = FIGURES[f"hernell2007-{number}"]()
+    assert (figure.paper, figure.number) == ("Hernell2007", number)
+    assert figure.caption.endswith(".")
+    assert {scene.technique_id for scene in scenes(figure)} <= {"local-occlusion", "raycast-phong"}
+    assert all(Scene.from_json(scene.to_json(), scene.volume) == scene for scene in scenes(figure))
+
+
+@pytest.mark.gpu
+def test_a_difference_is_black_where_nothing_differs_and_white_where_all_does() -> None:
+    scene = scenes(FIGURES["hernell2007-3"]())[0]
+    same = draw_difference(Difference(scene, scene), (24, 24), 1)
+    assert np.asarray(same).max() == 0
+    dark = scene.with_({"technique.ambient": 0.0, "technique.diffuse": 0.0, "technique.specular": 0.0})
+    other = np.asarray(draw_difference(Difference(dark, scene), (24, 24), 1))
+    assert other.shape == (24, 24, 3)
+    assert other.max() == 255
+    assert other[0, 0].max() == 0  # the background
 
 
 def test_numbers_are_the_papers() -> None:

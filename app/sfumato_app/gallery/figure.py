@@ -34,6 +34,23 @@ class Cuts:
 
 
 @dataclass(frozen=True)
+class Difference:
+    """How far one scene's picture is from another's, as grey.
+
+    Parameters
+    ----------
+    scene, truth : Scene
+        What is compared, and with what.
+    white : float
+        Distance in CIELAB that is drawn white.
+    """
+
+    scene: Scene
+    truth: Scene
+    white: float = 10.0
+
+
+@dataclass(frozen=True)
 class Panel:
     """One picture of a figure.
 
@@ -41,14 +58,14 @@ class Panel:
     ----------
     label : str
         The letter below it.
-    picture : Scene or Cuts
+    picture : Scene, Cuts or Difference
         What it shows.
     note : str
         How it was made, a few words.
     """
 
     label: str
-    picture: Scene | Cuts
+    picture: Scene | Cuts | Difference
     note: str
 
 
@@ -65,11 +82,13 @@ class Figure:
     caption : str
         What is compared, and what to look for.
     panels : tuple of Panel
-        From left to right.
+        From left to right, row by row.
     size : (width, height)
         Of a finished panel in pixels.
     paper : str
         Key of the paper.
+    columns : int
+        Panels of a row; 0: all.
     """
 
     number: int
@@ -78,6 +97,7 @@ class Figure:
     panels: tuple[Panel, ...]
     size: tuple[int, int] = (480, 480)
     paper: str = FIRST
+    columns: int = 0
 
     @property
     def file_name(self) -> str:
@@ -96,6 +116,6 @@ def file_name(figure: int | str) -> str:
     return f"{paper + '-' if paper else ''}fig{int(number):02d}.png"
 
 
-def panels(*parts: tuple[Scene | Cuts, str]) -> tuple[Panel, ...]:
+def panels(*parts: tuple[Scene | Cuts | Difference, str]) -> tuple[Panel, ...]:
     """Letter pictures with notes from (a)."""
     return tuple(Panel(chr(ord("a") + k), picture, note) for k, (picture, note) in enumerate(parts))

@@ -8,8 +8,9 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from sfumato import Scene, SfumatoError, Volume, render
+from sfumato.techniques.local_occlusion.levels import cielab
 
-from .figure import Cuts, Figure, Panel
+from .figure import Cuts, Difference, Figure, Panel
 
 #: Share of a panel's height for gaps and for the line of letters.
 GAP, LINE = 0.025, 0.075
@@ -31,13 +32,15 @@ def draw_figure(figure: Figure, scale: float = 1.0, frames: int | None = None) -
     """
     width, height = (max(8, round(side * scale)) for side in figure.size)
     gap, line = max(2, round(height * GAP)), max(9, round(height * LINE))
-    count = len(figure.panels)
-    sheet = Image.new("RGB", (count * width + (count - 1) * gap, height + line), SHEET)
+    across = figure.columns or len(figure.panels)
+    rows = -(-len(figure.panels) // across)
+    sheet = Image.new("RGB", (across * width + (across - 1) * gap, rows * (height + line)), SHEET)
     pen, font = ImageDraw.Draw(sheet), ImageFont.load_default(line * 0.58)
     for number, panel in enumerate(figure.panels):
-        left = number * (width + gap)
-        sheet.paste(draw_panel(panel, (width, height), frames), (left, 0))
-        pen.text((left + width / 2, height + line / 2), f"({panel.label})", fill=INK, font=font, anchor="mm")
+        left, top = number % across * (width + gap), number // across * (height + line)
+        sheet.paste(draw_panel(panel, (width, height), frames), (left, top))
+        middle = left + width / 2, top + height + line / 2
+        pen.text(middle, f"({panel.label})", fill=INK, font=font, anchor="mm")
     return sheet
 
 
@@ -45,8 +48,20 @@ def draw_panel(panel: Panel, size: tuple[int, int], frames: int | None = None) -
     """Draw a panel at a size in pixels."""
     if isinstance(panel.picture, Cuts):
         return draw_cuts(panel.picture, size)
+    if isinstance(panel.picture, Difference):
+        return draw_difference(panel.picture, size, frames)
     scene: Scene = panel.picture if frames is None else panel.picture.with_(frames=frames)
     return Image.fromarray(np.ascontiguousarray(render(scene, size)[..., :3]))
+
+
+def draw_difference(difference: Difference, size: tuple[int, int], frames: int | None = None) -> Image.Image:
+    """Draw how far a scene's picture is from another's."""
+    looks = []
+    for scene in (difference.scene, difference.truth):
+        shown = scene if frames is None else scene.with_(frames=frames)
+        looks.append(cielab(np.clip(render(shown, size, linear=True)[..., :3], 0, 1)))
+    away = np.linalg.norm(looks[0] - looks[1], axis=-1)
+    return Image.fromarray(np.uint8(np.rint(255 * np.clip(away / difference.white, 0, 1)))).convert("RGB")
 
 
 def save(picture: Image.Image, path: Path) -> int:

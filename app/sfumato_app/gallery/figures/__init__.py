@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..figure import Figure
-from . import combined, extinction_places, extinction_scans, extinction_terms, local
+from . import combined, extinction_places, extinction_scans, extinction_terms, local, local_scans
 from .bonsai import figure_14
 from .cone import figure_8
 from .fish import figure_9
@@ -33,8 +33,13 @@ FIGURES: dict[int | str, Callable[[], Figure]] = {
     "schlegel2011-10": extinction_scans.figure_10,
     "schlegel2011-11": extinction_scans.figure_11,
     "schlegel2011-12": extinction_scans.figure_12,
+    "hernell2007-1": local.figure_1,
     "hernell2007-3": local.figure_3,
     "hernell2007-4": local.figure_4,
+    "hernell2007-6": local_scans.figure_6,
+    "hernell2007-7": local_scans.figure_7,
+    "hernell2007-8": local_scans.figure_8,
+    "hernell2007-9": local_scans.figure_9,
     "hernell2007-10": local.figure_10,
     "schott2012-1": combined.figure_1,
     "schott2012-2": combined.figure_2,

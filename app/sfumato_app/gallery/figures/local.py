@@ -1,4 +1,4 @@
-"""The figures of Hernell2007: local ambient occlusion and tissue that gives off light."""
+"""Figures 1, 3, 4 and 10 of Hernell2007: local ambient occlusion and tissue that gives off light."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ GLOW = (5.0, 1.8, 0.4)
 BLOCK = 16.0
 
 
-def _still(scene: Scene) -> Scene:
+def still_local(scene: Scene) -> Scene:
     """Return a scene on paper; light from all around is smooth, so that few frames are enough."""
     return still(scene).with_(frames=2)
 
@@ -46,7 +46,27 @@ def _shapes(glow: bool = False) -> Scene:
     else:
         rest = [(70, SKIN, 0.0), (95, SKIN, 0.9), (140, SKIN, 0.95)]
     transfer = TransferFunction.from_points([*wall, *rest])
-    return _still(Scene(volume=volume, transfer=transfer, camera=look(volume.center, 140, turn=-14, lift=10)))
+    return still_local(
+        Scene(volume=volume, transfer=transfer, camera=look(volume.center, 140, turn=-14, lift=10))
+    )
+
+
+def figure_1() -> Figure:
+    """Light at the ends of rays alone, and at each sample."""
+    shapes = _shapes()
+    few: dict[str, object] = {"directions": 8, "radius": 28.0, "samples": 28}
+    return Figure(
+        1,
+        "Light from the ends of rays, or from all of their length",
+        "Eight rays. Where light comes from their ends alone, each solid throws a shadow with an edge for each ray; "
+        "where every sample brings its share, shadows grow by and by.",
+        panels(
+            (local(shapes, ends=True, **few), "from the ends alone"),
+            (local(shapes, **few), "from each sample"),
+        ),
+        (384, 384),
+        PAPER,
+    )
 
 
 def figure_3() -> Figure:
@@ -92,7 +112,9 @@ def splinter() -> Scene:
         [(30, FLESH, 0.0), (60, FLESH, 0.03), (150, FLESH, 0.03), (240, BONE, 0.06), (420, BONE, 0.6),
          (1250, BONE, 0.8), (1300, (0.9, 0.6, 0.3), 0.9, GLOW), (3000, (0.9, 0.6, 0.3), 0.95, GLOW)]
     )  # fmt: skip
-    return _still(Scene(volume=volume, transfer=transfer, camera=look((52.0, volume.center[1], 70.0), 130)))
+    return still_local(
+        Scene(volume=volume, transfer=transfer, camera=look((52.0, volume.center[1], 70.0), 130))
+    )
 
 
 def figure_10() -> Figure:
