@@ -10,7 +10,8 @@ under the transfer function (`levels`), packed into one texture (`packing`). Lig
 alone; coarse blocks take longer steps.
 
 Use it for shapes that hide in each other's shadows, noisy data (no gradients are needed), and to see what a bright
-fragment lies next to. Lamps shade surfaces, or cast the shadows of `cone`, and are mixed with it or multiplied.
+fragment lies next to. Lamps shade surfaces, or cast shadows as `cone` or `multidirectional`; both are
+multiplied or mixed.
 
 Where we differ from the paper: the directions' weights are the faces' solid angles; what gives off light does so by
 its opacity, so that what is not there does not shine; the reverse index has an entry a block (`packing`), so blocks
