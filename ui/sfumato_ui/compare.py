@@ -25,6 +25,7 @@ from .editing import Editor
 from .generated import ChoiceBox
 from .history import HistoryRow
 from .jobs import Picture
+from .threads import tell
 from .thumbnails import Thumbnails
 from .viewport import Viewport
 from .wipe import CompareLayer, FollowsSize, WipeHandle
@@ -58,7 +59,7 @@ class _Differ(QObject):
     def _run(self, number: int, one: QImage, other: QImage) -> None:
         found = difference_picture(one, other)
         if number == self.number:
-            self.done.emit(number, found)
+            tell(self.done, number, found)
 
 
 class ComparePage(QWidget):

@@ -29,6 +29,8 @@ ROUNDS = 3
 LIT = 0.2
 #: Samples of a ray that the eye sees less of than this, compared with the one it sees most of, do not count.
 LEAST_SEEN = 1e-3
+#: Half of what counts as one layer, in samples of half a voxel.
+HALF_LAYER = 6
 
 
 @dataclass(frozen=True)
@@ -65,9 +67,9 @@ class LitPlace:
     Parameters
     ----------
     point : ndarray, shape (3,)
-        Half of what the eye sees there comes from before this point of its ray, world mm, and half from behind it. Its
-        shadow is seen, not that of the point up to which half of the ray is lost: light reaches the front of a soft
-        surface more than what lies deeper, the more so the more it grazes it.
+        Of the layer on the eye's ray that is seen brightest, the point before which half of its brightness comes from,
+        world mm. A shadow there is seen, not one on the point up to which half of the ray is lost: light reaches the
+        front of a soft surface more than what lies deeper, the more so the more it grazes it.
     share : float
         How much of the light the surface's own skin lets through on its way to what is seen, 0 to 1: next to nothing
         where the surface turns away from the light.
@@ -95,10 +97,14 @@ def lit_place(scene: Scene, x: float, y: float, aspect: float, towards: np.ndarr
         return None
     first, last = np.flatnonzero(seen >= LEAST_SEEN * seen.max())[[0, -1]]
     points, seen = points[first : last + 1], seen[first : last + 1]
-    lit = np.cumsum(seen * np.exp(-light_depths(scene, points, towards)))
-    middles = lit - 0.5 * np.diff(lit, prepend=0)
-    point = np.array([np.interp(0.5 * lit[-1], middles, c) for c in points.T])
-    return LitPlace(point, float(lit[-1] / seen.sum()))
+    lit = seen * np.exp(-light_depths(scene, points, towards))
+    layer = np.convolve(lit, np.ones(2 * HALF_LAYER + 1), "same")
+    brightest = int(layer.argmax())
+    around = slice(max(0, brightest - HALF_LAYER), brightest + HALF_LAYER + 1)
+    share = np.cumsum(lit[around])
+    middles = share - 0.5 * lit[around]
+    point = np.array([np.interp(0.5 * share[-1], middles, c) for c in points[around].T])
+    return LitPlace(point, float(lit.sum() / seen.sum()))
 
 
 def shadow_ends(

@@ -6,6 +6,8 @@ import threading
 
 from qtpy.QtCore import QObject, Signal
 
+from ..threads import tell
+
 
 class VtkImporter(QObject):
     """Imports VTK, which takes seconds the first time, away from the window's thread."""
@@ -23,4 +25,4 @@ class VtkImporter(QObject):
             import pyvistaqt  # noqa: F401
         except Exception as error:  # a broken installation may raise anything
             problem = str(error) or type(error).__name__
-        self.done.emit(problem)
+        tell(self.done, problem)
