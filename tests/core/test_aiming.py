@@ -153,6 +153,8 @@ SIDE, PART = 512, 7
 AROUND = 25
 #: Cosine of the angle to the sight from which on a lamp can shine: 69 degrees, and a little more.
 SLANT = 0.37
+#: Radius of the ideal speck in voxels: on a slope the shadow of a larger one is long.
+SPECK = 0.6
 #: Places of the picture from which pairs are drawn.
 PLACES = 2500
 #: Pairs by geometry, and how many of them are traced with and without a speck.
@@ -240,17 +242,20 @@ def miss(scene: Scene, at: np.ndarray, caster: np.ndarray) -> float:
     """Return how far, in pixels, the shadow of an ideal speck at the caster is seen from the cursor.
 
     By the reference's rays and medium: of what each pixel near the cursor sees, weighted by how much light its own
-    surface lets through, the share that lies in the shadow of a ball of one voxel's radius; the middle of those pixels
+    surface lets through, the share that lies in the shadow of a small ball; the middle of those pixels
     where it is at least half of its largest, as far as they hang together: beyond an edge it falls on something else.
     What else stands in the light, such as the rest of what the caster is a point of, does not count: it would hide the
     speck's shadow in its own.
     """
     assert scene.volume is not None
     assert scene.camera is not None
-    half, radius = AROUND / SIDE / 2, scene.volume.min_spacing
+    half, voxel = AROUND / SIDE / 2, scene.volume.min_spacing
+    radius = SPECK * voxel
     x, y = (at + 1) / 2
     near = scene.camera.cropped(x - half, y - half, x + half, y + half)
-    task = cone.prepare(scene.with_(camera=near, technique="reference"), (AROUND, AROUND), 1, 1.0, 0)
+    task = cone.prepare(
+        scene.with_(camera=near, technique="reference", step=0.5), (AROUND, AROUND), 1, 1.0, 0
+    )
     towards = np.asarray(scene.lights[0].towards(scene.camera.basis(), scene.volume.center))
     left, bright, dark = np.ones(AROUND**2), np.zeros(AROUND**2), np.zeros(AROUND**2)
     start, slope = task.rays.start, task.rays.slope
@@ -261,7 +266,7 @@ def miss(scene: Scene, at: np.ndarray, caster: np.ndarray) -> float:
         depth = task.medium.between(task.medium.value(a), task.medium.value(b))[0]
         depth = depth * np.linalg.norm(b - a, axis=-1)
         middle = 0.5 * (a + b)
-        seen = left[hit] * -np.expm1(-depth) * np.exp(-skin(task.medium, middle, towards, radius))
+        seen = left[hit] * -np.expm1(-depth) * np.exp(-skin(task.medium, middle, towards, voxel))
         way = middle - caster
         along = way @ towards
         beside = np.linalg.norm(way - np.outer(along, towards), axis=-1)
