@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import sfumato
+from sfumato.gpu import is_software
 from sfumato.renderer import Renderer
 from sfumato_app.bench import main
-from sfumato_app.bench.machine import is_software
 from sfumato_app.bench.measure import Result, Spread
 from sfumato_app.bench.phantom import phantom
 from sfumato_app.bench.ratios import RATIOS, Goal, outcomes

@@ -9,13 +9,9 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from sfumato.gpu import is_software
+
 PACKAGES = ("sfumato", "numpy", "scipy", "moderngl", "vtk")
-_SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "swr")
-
-
-def is_software(device: str) -> bool:
-    """Tell whether a graphics device is a program that runs on the CPU."""
-    return any(name in device.lower() for name in _SOFTWARE)
 
 
 def describe(device: str, version: str) -> dict[str, Any]:

@@ -6,7 +6,7 @@ GPU objects are made, sized and freed here: `Device` (context, functions that mo
 `gpu_objects` (what is there, and its bytes).
 """
 
-from .device import Device
+from .device import Device, is_software
 from .memory import GpuObject, gpu_objects
 from .program import Program, ShaderSource, Variants
 from .store import Store
@@ -22,4 +22,5 @@ __all__ = [
     "Target",
     "Variants",
     "gpu_objects",
+    "is_software",
 ]

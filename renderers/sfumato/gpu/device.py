@@ -29,6 +29,12 @@ FENCE_SECONDS = 2.0
 MAX_FENCE_WAITS = 60
 #: A lost context reports errors without end.
 MAX_OLD_ERRORS = 16
+_SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "swr")
+
+
+def is_software(device: str) -> bool:
+    """Tell by its name whether a graphics device is a program that runs on the CPU."""
+    return any(name in device.lower() for name in _SOFTWARE)
 
 
 class Device:
@@ -52,6 +58,7 @@ class Device:
         info = self.ctx.info
         self.name = str(info["GL_RENDERER"])
         self.version = str(info["GL_VERSION"])
+        self.is_software = is_software(self.name)
         self.max_texture_3d = int(info["GL_MAX_3D_TEXTURE_SIZE"])
         self.max_texture_2d = int(info["GL_MAX_TEXTURE_SIZE"])
         self.max_layers = int(info["GL_MAX_ARRAY_TEXTURE_LAYERS"])

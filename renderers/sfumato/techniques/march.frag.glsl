@@ -2,7 +2,7 @@
 //
 // SLICES     samples lie on planes that face the viewer; otherwise at equal distances along each ray
 // SHADING    0: unlit, 1: light from swept layers, 2: by the gradient (Blinn-Phong), without shadows, 3: light from lamps' textures, 4: light kept in the volume's space,
-//            5: light of each point's neighbourhood
+//            5: light of each point's neighbourhood, 6: light that lies beside the values in the volume's texture
 // LIGHTS     number of lights
 // LITERAL    1: the published occlusion forms, which light a sample by its opacity, not by the slab term
 // SPECULAR   the swept lights have gradient-based highlights
@@ -47,6 +47,10 @@ uniform int u_rear[4];               // 1: behind the subject, its light enters 
 #include "local_light"
 #endif
 
+#if SHADING == 6
+uniform float u_light_scale;         // linear light that 1 in the volume's texture stands for
+#endif
+
 #if SURFACE
 uniform sampler2D u_surface;         // linear depth in a; wider than the picture by u_margin on each side
 uniform int u_margin;
@@ -57,7 +61,19 @@ layout(location = 0) out vec4 o_color;
 // What a ray can still let through before it counts as opaque.
 const float OPAQUE = 0.999;
 // Whether shading costs so much more than looking that it pays to wait until all neighbours have something to shade.
-const bool LOOK_ON = SHADING > 0;
+const bool LOOK_ON = SHADING > 0 && SHADING < 6;
+
+// What the volume's texture holds at a place: its value, and the light there if it lies beside it.
+struct Reading { float value; vec3 light; };
+
+Reading reading_at(vec3 t) {
+#if SHADING == 6
+    vec4 texel = textureLod(u_volume, t, 0.0);
+    return Reading(texel.r, texel.gba);
+#else
+    return Reading(volume_value(t), vec3(0.0));
+#endif
+}
 
 // The last plane at or before a depth, but not beyond the ray's end.
 int plane_before(float z, float z0, float dz, float end) { return int(floor((min(z, end + dz) - z0) / dz)); }
@@ -136,21 +152,21 @@ void main() {
 #endif
     int i = max(u_first, int(floor((range.x - z0) / dz)));
     float z = max(range.x, z0 + float(i) * dz);
-    float value = volume_value(a + b * z);
+    Reading here = reading_at(a + b * z);
     vec3 view = -ray.direction / secant;
 
     // Loops where branches would do: software renderers run both sides of a branch, but leave a loop when all have.
-    bool known = true;           // whether `value` is the volume's at z
+    bool known = true;           // whether `here` is what lies at z
     while (sum.a < OPAQUE && i < u_last && z < range.y) {
         // 1. Over what is empty, to the last plane before its end.
-        int next = plane_before(z + empty_run(a, b, z), z0, dz, range.y);
-        while (next > i && i < u_last && z < range.y) {
-            i = next;
+        int skipped = plane_before(z + empty_run(a, b, z), z0, dz, range.y);
+        while (skipped > i && i < u_last && z < range.y) {
+            i = skipped;
             z = z0 + float(i) * dz;
             known = false;
-            next = plane_before(z + empty_run(a, b, z), z0, dz, range.y);
+            skipped = plane_before(z + empty_run(a, b, z), z0, dz, range.y);
         }
-        if (!known) value = volume_value(a + b * z);
+        if (!known) here = reading_at(a + b * z);
         known = true;
         // 2. Through the block, one segment at least.
         float leave = min(z + max(block_run(a, b, z), 1e-3 * dz), range.y);
@@ -159,7 +175,8 @@ void main() {
 #endif
         while (sum.a < OPAQUE && i < u_last && z < leave) {
             int taken = 1;
-            float z_next = z, value_next = value, magnitude = 0.0;
+            float z_next = z, magnitude = 0.0;
+            Reading next = here;
             vec4 mean = vec4(0.0);
             // 3. On to the next segment in which something is visible.
             for (; i < u_last && z < leave; i += taken) {
@@ -167,14 +184,14 @@ void main() {
                 taken = clamp(int(ceil((leave - z) / dz)), 1, most);
 #endif
                 z_next = min(z0 + float(i + taken) * dz, range.y);
-                value_next = volume_value(a + b * z_next);
+                next = reading_at(a + b * z_next);
 #ifdef TRANSFER_2D
                 magnitude = length(volume_gradient(a + b * (0.5 * (z + z_next))));
 #endif
-                mean = classify(value, value_next, magnitude);
+                mean = classify(here.value, next.value, magnitude);
                 if (!LOOK_ON || mean.a > 0.0) break;
                 z = z_next;
-                value = value_next;
+                here = next;
             }
             if (LOOK_ON && mean.a <= 0.0) break;
 
@@ -184,8 +201,8 @@ void main() {
             vec3 color = mean.rgb / max(mean.a, 1e-20);
 #if SHADING == 1 || SHADING == 3
             float z_front = z0 + float(i) * dz, z_back = z_front + dz;
-            Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, value);
-            Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, value_next);
+            Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, here.value);
+            Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, next.value);
             vec3 c = lit(i, front, back, color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
 #elif SHADING == 4
             float z_mid = 0.5 * (z + z_next);
@@ -194,15 +211,17 @@ void main() {
             vec3 c = local_lit(color, alpha, a + b * (0.5 * (z + z_next)), view);
 #elif SHADING == 2
             vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
+#elif SHADING == 6
+            vec3 c = alpha * color * (0.5 * u_light_scale * (here.light + next.light));
 #else
             vec3 c = alpha * color;
 #endif
 #if EMISSION
-            c += alpha * classify_emission(value, value_next, magnitude) / max(mean.a, 1e-20);
+            c += alpha * classify_emission(here.value, next.value, magnitude) / max(mean.a, 1e-20);
 #endif
             sum += (1.0 - sum.a) * vec4(c, alpha);
             z = z_next;
-            value = value_next;
+            here = next;
             i += taken;
         }
     }

@@ -141,7 +141,7 @@ def blocks_along(view: View, frame: Frame, material: Material) -> tuple[np.ndarr
 
 
 #: How the march shader shades a sample.
-UNLIT, SWEPT, PHONG, VOLUMES, WORLD, LOCAL = 0, 1, 2, 3, 4, 5
+UNLIT, SWEPT, PHONG, VOLUMES, WORLD, LOCAL, BAKED = 0, 1, 2, 3, 4, 5, 6
 
 
 @dataclass(frozen=True)

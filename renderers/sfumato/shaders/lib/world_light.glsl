@@ -12,13 +12,26 @@ uniform vec4 u_lamp_place[4];        // world: place of a lamp in mm (w = 1), or
 uniform float u_world_lift;          // mm before a surface at which its light is looked up
 uniform float u_facing;              // how much a surface's slope counts, 0 to 1
 
+// All light at a place of the volume, linear RGB, as it is without slopes.
+vec3 world_light(vec3 t) {
+    vec4 light = textureLod(u_world_light, t * u_world_scale + u_world_offset, 0.0);
+    vec3 sum = light.rgb;
+#if LIGHTS > 0
+    sum += u_light_color[0] * light.a;
+#endif
+#if LIGHTS > 1
+    vec3 lamps = textureLod(u_world_lamps, t * u_world_scale + u_world_offset, 0.0).rgb;
+    sum += u_light_color[1] * lamps.r + u_light_color[2] * lamps.g + u_light_color[3] * lamps.b;
+#endif
+    return sum;
+}
+
+#if defined(FACING) && (FACING || SPECULAR)
 // Colour that a segment of opacity alpha sends to the eye; t and p_world are its middle.
 vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
-#if FACING || SPECULAR
     Slope slope = slope_at(t, view);
     // A surface gets the light that is just before it; within it are the steps of the cells.
     t += mat3(u_texture_from_world) * slope.normal * (u_world_lift * slope.surface);
-#endif
     vec4 light = textureLod(u_world_light, t * u_world_scale + u_world_offset, 0.0);
     vec3 sum = light.rgb, shine = vec3(0.0);
 #if LIGHTS > 0
@@ -32,10 +45,8 @@ vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
 #endif
     for (int l = 0; l < LIGHTS; ++l) {
         float factor = visible[l];
-#if FACING || SPECULAR
         vec3 towards = normalize(u_lamp_place[l].xyz - u_lamp_place[l].w * p_world);
         float facing = dot(slope.normal, towards);
-#endif
 #if SPECULAR
         float gleam = facing > 0.0 ? pow(max(dot(slope.normal, normalize(towards + view)), 0.0), u_shininess) : 0.0;
         shine += u_light_color[l] * (factor * u_specular * gleam * slope.surface);
@@ -48,3 +59,6 @@ vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
 #endif
     return alpha * (color * sum + shine);
 }
+#else
+vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) { return alpha * color * world_light(t); }
+#endif

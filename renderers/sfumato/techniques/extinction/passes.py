@@ -14,6 +14,7 @@ from ...gpu import Device, Program, Variants
 from ..frame import Frame
 from ..light_cache import LightCache
 from ..marcher import (
+    BAKED,
     WORLD,
     Marcher,
     Material,
@@ -25,6 +26,7 @@ from ..marcher import (
     visible_box,
 )
 from ..world_light import CellGrid, grid_over, place_uniforms
+from .baked import Baker, greatest_light
 from .field import Field, FieldMaker, draw_layers, lift, new_texture
 from .lamps import Emitter, emitter
 from .terms import TermMaker, densities
@@ -38,7 +40,7 @@ FEWEST = 32
 #: Radius of the automatic shells over the volume's longest side.
 RADIUS = 0.08
 #: Bytes of a cell's field: two tables of means and sums, and where light matters.
-FIELD_BYTES = 49
+FIELD_BYTES = 50
 #: Lamps that the ray caster knows one by one; the light of further ones is summed.
 OWN_LAMPS = 4
 
@@ -78,6 +80,7 @@ class ExtinctionPainter:
         self.marcher = Marcher(device)
         self.fields = FieldMaker(device)
         self.terms = TermMaker(device)
+        self.baker = Baker(device)
         folder = "techniques/extinction/"
         self._compose = Variants(device, folder + "compose.frag.glsl")
         self._further = Variants(device, folder + "further.frag.glsl")
@@ -101,7 +104,7 @@ class ExtinctionPainter:
             return
         plan = self._plan(frame, material)
         world = yield from self._light(frame, material, plan)
-        program = self._program(frame, material, plan.grid, world)
+        program = yield from self._program(frame, material, plan, world)
         self.marcher.begin(frame)
         for done in self.marcher.march(frame, program, (0, 1 << 24), box, True):
             yield 0.5 + 0.5 * done
@@ -112,6 +115,7 @@ class ExtinctionPainter:
         """Free all light that is kept: the next frame makes it anew."""
         for kept in (self.kept_worlds, self.kept_lamps, self.kept_ambient, self.kept_fields):
             kept.clear()
+        self.baker.clear()
 
     # -- the light cache --------------------------------------------------------------------------
     def _plan(self, frame: Frame, material: Material) -> Plan:
@@ -190,24 +194,42 @@ class ExtinctionPainter:
                 ctx.disable(moderngl.BLEND)
 
     # -- the ray caster ---------------------------------------------------------------------------
-    def _program(self, frame: Frame, material: Material, grid: CellGrid, world: World) -> Program:
-        params = frame.params
-        own = min(len(frame.scene.active_lights), OWN_LAMPS)
-        variant = Variant(shading=WORLD, lights=own, specular=params.specular > 0, facing=params.facing > 0)
-        program = self.marcher.program(variant, material)
-        bind_material(program, material, frame)
+    def _program(
+        self, frame: Frame, material: Material, plan: Plan, world: World
+    ) -> Generator[float, None, Program]:
+        """Return the ray caster's program, all set; yields the share done of the frame."""
+        params, own = frame.params, min(len(frame.scene.active_lights), OWN_LAMPS)
+        sloped = params.specular > 0 or params.facing > 0
+        bind = functools.partial(self._bind_world, frame, plan.grid, world, own)
+        if not sloped and self.baker.pays(frame, key := _baked_key(frame, material, plan)):
+            volume = yield from self.baker.volume(frame, material, key, own, bind)
+            program = self.marcher.program(Variant(shading=BAKED), material)
+            bind_material(program, material, frame)
+            program.bind(u_volume=volume)
+            program.set(u_light_scale=greatest_light(frame))
+        else:
+            variant = Variant(
+                shading=WORLD, lights=own, specular=params.specular > 0, facing=params.facing > 0
+            )
+            program = self.marcher.program(variant, material)
+            bind_material(program, material, frame)
+            bind(program)
         set_view(program, frame, None)
+        return program
+
+    def _bind_world(self, frame: Frame, grid: CellGrid, world: World, own: int, program: Program) -> None:
+        """Let a program read the light cache (``world_light.glsl``)."""
+        params = frame.params
         program.bind(u_world_light=world.world, u_world_lamps=world.lamps)
         program.set(
             u_facing=params.facing, u_specular=params.specular, u_shininess=params.shininess,
             **{**grid.uniforms, "u_world_lift": lift(grid, frame.volume.unit_distance)}, **place_uniforms(frame, own),
         )  # fmt: skip
-        return program
 
     def release(self) -> None:
         """Free the GPU objects."""
         parts: tuple[Any, ...] = (
-            self.marcher, self.fields, self.terms, self._compose, self._further,
+            self.marcher, self.fields, self.terms, self.baker, self._compose, self._further,
             self.kept_fields, self.kept_ambient, self.kept_lamps, self.kept_worlds,
         )  # fmt: skip
         for part in parts:
@@ -259,3 +281,8 @@ def _plan(frame: Frame, material: Material, longest: int) -> Plan:
     further = tuple((light.color, light.intensity) for light in scene.active_lights[OWN_LAMPS:])
     world = (ambient, params.ambient, lamp_keys, further)
     return Plan(grid, field, ambient, lamps, lamp_keys, world)
+
+
+def _baked_key(frame: Frame, material: Material, plan: Plan) -> Hashable:
+    lamps = tuple((light.color, light.intensity) for light in frame.scene.active_lights)
+    return plan.grid, plan.world, material.opacity_key, lamps
