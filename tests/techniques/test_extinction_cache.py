@@ -280,3 +280,42 @@ def faint_lamps() -> Callable[[int], tuple[Light, ...]]:
 def test_the_picture_is_that_of_the_command(renderer: Renderer, scene: Scene) -> None:
     """What is kept from other scenes leaves no trace."""
     np.testing.assert_array_equal(draw(renderer, scene, 24), sfumato.render(scene, (24, 24), linear=True))
+
+
+def test_light_that_rests_lies_beside_the_values(renderer: Renderer, scene: Scene) -> None:
+    """On software renderers: one look-up for both, the same picture; moved lamps and slopes do without."""
+    if not renderer.device.is_software:
+        pytest.skip("not a software renderer")
+    plain = scene.with_(**{"technique.facing": 0.0, "technique.specular": 0.0})
+    baker = renderer.painter(plain).baker
+    first = draw(renderer, plain, 64)
+    assert baker.filled == 0
+    second, third = draw(renderer, plain, 64), draw(renderer, plain, 64)
+    assert baker.filled == 1
+    np.testing.assert_array_equal(second, third)
+    assert np.abs(second - first).max() < 0.08
+    assert np.abs(second - first).mean() < 2e-3
+    np.testing.assert_allclose(second[..., 3], first[..., 3], atol=2e-3)
+    brighter = plain.with_(**{"lights.0.intensity": 1.5})
+    assert draw(renderer, brighter, 64)[..., :3].sum() > second[..., :3].sum()
+    assert baker.filled == 1
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"kind": "point", "position": (float("nan"), 0.0, 0.0)},
+        {"kind": "point", "position": (0.0, float("inf"), 0.0)},
+        {"kind": "point", "position": (0.0, 0.0, 0.0), "radius": 0.0},
+        {"kind": "spot", "position": (0.0, 0.0, 0.0), "direction": (0.0, 0.0, 0.0)},
+        {"kind": "area", "shape": "tube", "position": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 0.0)},
+        {"kind": "area", "shape": "rectangle", "position": (0.0, 0.0, 0.0), "size": (0.0, 1.0)},
+        {"aperture": 0.0},
+        {"aperture": 90.0},
+        {"intensity": float("inf")},
+    ],
+)
+def test_lamps_that_cannot_be_are_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(SceneError, match="is not allowed") as caught:
+        Light(**wrong)
+    assert "\n" not in str(caught.value)

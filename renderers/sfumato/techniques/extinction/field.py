@@ -85,16 +85,20 @@ class Field:
     dimming : Table or None
         What dims light from all around, of each colour, if there is such light.
     near : texture
-        1 in the cells where light matters.
+        How open cells are to light that is carried on; 0 where light does not matter.
     voxel : float
         The volume's mean spacing, mm.
+    reach : int
+        Cells around what is visible in which light matters.
     """
+
+    reach = 0
 
     def __init__(self, device: Device, size: tuple[int, int, int], ambient: bool, voxel: float) -> None:
         self.device, self.size, self.voxel = device, size, voxel
         self.matter = Table(new_texture(device, size, 4, "f2"))
         self.dimming = Table(new_texture(device, size, 4, "f2")) if ambient else None
-        self.near = new_texture(device, size, 1, "f1")
+        self.near = new_texture(device, size, 1, "f2")
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -154,8 +158,10 @@ class FieldMaker:
                 yield 0.6 + share * (number + done)
         near = self._near.get(())
         made.matter.bind(near)
+        near.bind(u_matter=made.matter.cells)
         # Light is looked up as far from a surface as `lift` says, between cells, and carried on from one more.
-        near.set(u_reach=2 + math.ceil(lift(grid, made.voxel) / grid.cell_mm - 1e-6))
+        made.reach = 2 + math.ceil(lift(grid, made.voxel) / grid.cell_mm - 1e-6)
+        near.set(u_reach=made.reach)
         for done in draw_layers(self.device, near, made.near):
             yield 0.95 + 0.05 * done
 

@@ -2,15 +2,17 @@
 //
 // POINTS     0: the lamp is a disc seen from each cell (a parallel light's cone, a sphere), 1: it is given by places on it
 // CONES      the lamp's cone is taken apart into so many narrow ones
+// PART       0: all of the way to the lamp. Of a wide cone, where what is far is soft, 1: only what is far, for each 2^3 cells;
+//            2: what is near, by one cone, times what is far
 #include "sums"
 
 uniform int u_layer;
-uniform sampler3D u_near;            // where light matters
+uniform sampler3D u_near;            // how open cells are; 0 where light does not matter
 uniform vec3 u_edge_mm;              // a cell's edges in mm
 uniform float u_cell_mm;             // their mean, to which the cells' optical depths refer
 uniform vec4 u_lamp;                 // in mm from the corner of cell 0 along the volume's axes: place (w = 1), or unit vector towards it (w = 0)
 uniform float u_tangent;             // of the lamp's half angle; < 0: from its radius
-uniform float u_radius;              // mm
+uniform float u_radius;              // mm; of a lamp given by places that of a sphere which is as wide
 uniform vec2 u_disc[CONES];          // places of the narrow cones in the unit disc, spread over a cell as well
 uniform vec3 u_place[CONES];         // places on the lamp, mm
 uniform float u_part;                // radius of a narrow cone: share of the disc's (POINTS 0), or mm
@@ -22,9 +24,16 @@ uniform float u_first;               // first section, in cells along the domina
 uniform float u_growth;              // relative growth of the sections
 uniform float u_strength;
 
+#if PART
+uniform int u_around;                // cells from what is visible within which the share is needed
+uniform int u_split;                 // layers from the middle of 2^3 cells at which far begins
+#endif
+#if PART == 2
+uniform sampler3D u_far;             // share of the light that what is far lets through
+#endif
 uniform float u_unshadowed;          // 1: nothing is in the way
 
-layout(location = 0) out float o_light;
+layout(location = 0) out vec2 o_light;       // light times openness, and openness; PART 1: the share
 
 const int MOST = 160;                // sections of a cone
 const float ACROSS_A_CELL = 0.6;     // radius in cells within which the cones start
@@ -62,34 +71,39 @@ void pass(inout Passing p, vec4 mean, float cells, float layers) {
 // Vectors with the dominant axis first, and back.
 vec3 turned(vec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.yzx : v.zxy; }
 ivec3 turned(ivec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.yzx : v.zxy; }
+vec3 turned_back(vec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.zxy : v.yzx; }
 ivec3 turned_back(ivec3 v, int axis) { return axis == 0 ? v : axis == 1 ? v.zxy : v.yzx; }
 
-// Light that comes through a cone from a cell along a unit vector, as far as `end` mm. It starts that far beside the
-// cell's middle, in cells: boxes are whole cells, and cones that all start alike would round theirs alike, which
-// leaves steps in the shadows of small lamps.
-float through(ivec3 cell, vec3 along, float tangent, float end, vec2 beside) {
+int dominant(vec3 along) {
     vec3 steep = abs(along / u_edge_mm);
-    int axis = steep.x >= max(steep.y, steep.z) ? 0 : steep.y >= steep.z ? 1 : 2;
-    vec3 edge = turned(u_edge_mm, axis), way = turned(along, axis), at = vec3(turned(cell, axis)) + 0.5;
+    return steep.x >= max(steep.y, steep.z) ? 0 : steep.y >= steep.z ? 1 : 2;
+}
+
+// Light that comes through a cone from a place, in cells, along a unit vector, as far as `end` mm: of the layers along an axis
+// those from `begin` to `stop` layers from the place; both are where layers meet. It starts that far beside the place,
+// in cells: boxes are whole cells, and cones that all start alike would round theirs alike, which leaves steps in the
+// shadows of small lamps.
+float through(vec3 place, int axis, vec3 along, float tangent, float end, vec2 beside, float begin, float stop) {
+    vec3 edge = turned(u_edge_mm, axis), way = turned(along, axis), at = turned(place, axis);
     ivec3 cells = turned(u_cells, axis);
     int sign_of = way.x > 0.0 ? 1 : -1;
-    float length_mm = edge.x / abs(way.x);                          // of the way through one layer of cells
-    vec2 slope = way.yz / abs(way.x) * edge.x / edge.yz;            // cells across for one along
+    float steepness = max(abs(way.x), 1e-3);
+    float length_mm = edge.x / steepness;                           // of the way through one layer of cells
+    vec2 slope = way.yz / steepness * edge.x / edge.yz;             // cells across for one along
     float slant = max(abs(slope.x), abs(slope.y));
-    vec2 lean = sqrt(1.0 + way.yz * way.yz / (way.x * way.x));      // a section across the axis is longer than the cone is wide
-    float last = end / length_mm;                                   // in layers from the cell's centre
-    int begin = 1;                                                  // layers from the cell's own
-    float width = u_first;
+    vec2 lean = sqrt(1.0 + way.yz * way.yz / (steepness * steepness));  // a section across the axis is longer than the cone is wide
+    float last = end / length_mm;                                   // in layers from the place
+    float from = begin, width = u_first + u_growth * (begin - 0.5);
     Passing light = Passing(1.0, 0.0, 1.0);
     for (int i = 0; i < MOST && light_of(light) > DARK; ++i) {
+        if (from >= min(last, stop)) break;
         // A box lies straight: along a slanting way a section is not longer than the cone stays in it.
-        float wide = 2.0 * tangent * (float(begin) + 0.5 * width) * length_mm / max(edge.y, edge.z);
-        int count = max(int(min(min(width, last - float(begin) + 0.5), (wide + DRIFT) / max(slant, 1e-3)) + 0.5), 1), next = begin + count;
-        float from = float(begin) - 0.5, to = float(next) - 0.5;
-        if (from >= last) break;
+        float wide = 2.0 * tangent * (from + 0.5 + 0.5 * width) * length_mm / max(edge.y, edge.z);
+        float most = min(min(width, last - from), min(stop - from, (wide + DRIFT) / max(slant, 1e-3)));
+        float count = max(floor(most + 0.5), 1.0), to = from + count;
         // The section's layers, from low to below high, as far as they lie in the volume.
-        int first_layer = int(at.x) + (sign_of > 0 ? begin : -(next - 1));
-        ivec2 along_axis = clamp(ivec2(first_layer, first_layer + count), ivec2(0), ivec2(cells.x));
+        int near_plane = int(at.x + float(sign_of) * from + 0.5), far_plane = int(at.x + float(sign_of) * to + 0.5);
+        ivec2 along_axis = clamp(ivec2(min(near_plane, far_plane), max(near_plane, far_plane)), ivec2(0), ivec2(cells.x));
         if (along_axis.x >= along_axis.y) break;
         float middle = 0.5 * (from + to);
         vec2 center = at.yz + beside + slope * middle, half_width = tangent * middle * length_mm / edge.yz * lean;
@@ -104,7 +118,7 @@ float through(ivec3 cell, vec3 along, float tangent, float end, vec2 beside) {
         vec4 mean = box_sum(turned_back(corner, axis), turned_back(far_corner, axis)) / float(box.x * box.y * box.z);
         // The mean counts for the section's own length.
         pass(light, mean, float(box.x) * length_mm / u_cell_mm * min(1.0, (last - from) / (to - from)), float(box.x));
-        begin = next;
+        from = to;
         width *= 1.0 + u_growth;
     }
     return light_of(light);
@@ -116,42 +130,82 @@ mat2x3 across(vec3 n) {
     return mat2x3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y));
 }
 
-void main() {
-    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer);
-    o_light = 1.0;
-    if (texelFetch(u_near, cell, 0).r == 0.0) return;
-    vec3 p = (vec3(cell) + 0.5) * u_edge_mm, axis = u_lamp.xyz - u_lamp.w * p;
+// Unit vector from a place in mm to the lamp's middle, and how far it is.
+vec4 way_to_lamp(vec3 p) {
+    vec3 axis = u_lamp.xyz - u_lamp.w * p;
     float away = u_lamp.w > 0.0 ? max(length(axis), 1e-6 * u_cell_mm) : 1e30;
-    if (u_lamp.w > 0.0) axis /= away;
+    return vec4(u_lamp.w > 0.0 ? axis / away : axis, away);
+}
 
-    // 1. What reaches the cell if nothing is in the way.
-    float arriving = u_reach > 0.0 ? 1.0 / (1.0 + away * away / (u_reach * u_reach)) : 1.0;
-    if (u_beam_edge.x < u_beam_edge.y) arriving *= smoothstep(u_beam_edge.x, u_beam_edge.y, dot(-axis, u_beam));
-
-    // 2. What is in the way, cone by cone.
-    float sum = 0.0, open = 0.0, weights = 0.0;
+// Share of the light of all narrow cones that comes from a place, in cells, through what is farther than `begin` layers;
+// times what a lamp that shines to one side sends that way, which is all that `open` holds.
+float all_through(vec3 place, vec4 way, float begin, out float open) {
+    vec3 p = place * u_edge_mm;
+    float sum = 0.0;
+    open = 0.0;
 #if POINTS
     for (int k = 0; k < CONES; ++k) {
         vec3 along = u_place[k] - p;
         float distance_mm = max(length(along), 1e-6 * u_cell_mm);
         along /= distance_mm;
         float weight = dot(u_shines, u_shines) > 0.0 ? max(dot(-along, u_shines), 0.0) : 1.0;
-        weights += 1.0;
         if (weight <= 0.0) continue;
+        open += weight / float(CONES);
+#if PART != 2
         // A rectangle seen from the side is narrow, and what lies behind it is not in the way.
         float tangent = u_tangent >= 0.0 ? u_tangent : u_part * max(weight, 0.1) / distance_mm;
-        sum += weight * through(cell, along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k]);
-        open += weight;
+        sum += weight / float(CONES) * through(place, dominant(along), along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k], begin, 1e9);
+#endif
     }
 #else
-    float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / away;
-    mat2x3 sides = across(axis);
+    open = 1.0;
+#if PART != 2
+    float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / way.w;
+    mat2x3 sides = across(way.xyz);
     for (int k = 0; k < CONES; ++k) {
-        vec3 along = normalize(axis + sides * (u_disc[k] * tangent));
-        sum += through(cell, along, tangent * u_part, away, ACROSS_A_CELL * u_disc[k]);
-        open += 1.0;
-        weights += 1.0;
+        vec3 along = normalize(way.xyz + sides * (u_disc[k] * tangent));
+        sum += through(place, dominant(along), along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], begin, 1e9) / float(CONES);
     }
 #endif
-    o_light = arriving * max(sum, u_unshadowed * open) / weights;
+#endif
+    return sum;
+}
+
+void main() {
+    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer);
+#if PART == 1
+    o_light = vec2(1.0);
+    // 2^3 cells; so far from where light matters that nothing is interpolated from here, it is not needed.
+    vec3 place = vec3(2 * cell + 1);
+    vec4 matter = box_sum(max(2 * cell - u_around, 0), min(2 * cell + 2 + u_around, u_cells));
+    if (matter.r + matter.g == 0.0) return;
+    float open, sum = all_through(place, way_to_lamp(place * u_edge_mm), float(u_split), open);
+    o_light = vec2(open > 0.0 ? sum / open : 1.0);
+#else
+    o_light = vec2(0.0);
+    float openness = texelFetch(u_near, cell, 0).r;
+    if (openness == 0.0) return;
+    vec3 place = vec3(cell) + 0.5, p = place * u_edge_mm;
+    vec4 way = way_to_lamp(p);
+
+    // 1. What reaches the cell if nothing is in the way.
+    float arriving = u_reach > 0.0 ? 1.0 / (1.0 + way.w * way.w / (u_reach * u_reach)) : 1.0;
+    if (u_beam_edge.x < u_beam_edge.y) arriving *= smoothstep(u_beam_edge.x, u_beam_edge.y, dot(-way.xyz, u_beam));
+
+    // 2. What is in the way, cone by cone.
+    float open, sum = all_through(place, way, 0.5, open);
+#if PART == 2
+    // Far begins at a plane that is the same for all 2^3 cells, and rays through it go on from where they meet it.
+    vec3 middle = 2.0 * floor(0.5 * vec3(cell)) + 1.0;
+    vec3 main_way = way_to_lamp(middle * u_edge_mm).xyz;
+    int axis = dominant(main_way);
+    vec3 to_place = turned(place - middle, axis), slope = turned(way.xyz / u_edge_mm, axis);
+    slope /= main_way[axis] > 0.0 ? max(slope.x, 1e-3) : min(slope.x, -1e-3);
+    float stop = float(u_split) - to_place.x * sign(main_way[axis]);
+    vec3 at_far = middle + turned_back(vec3(0.0, to_place.yz - slope.yz * to_place.x), axis);
+    float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / way.w;
+    sum = open * textureLod(u_far, at_far / vec3(u_cells), 0.0).r * through(place, axis, way.xyz, tangent, way.w, vec2(0.0), 0.5, stop);
+#endif
+    o_light = openness * vec2(arriving * max(sum, u_unshadowed * open), 1.0);
+#endif
 }

@@ -26,12 +26,15 @@ class Emitter:
         Whether it is given by places on it, not as a disc seen from each cell.
     uniforms : dict
         What the shader needs.
+    tangent : float
+        Of the half angle under which it is seen from where it looks smallest.
     key : hashable
         Equal for lamps that light alike, whatever their colour.
     """
 
     points: bool
     uniforms: dict[str, Any]
+    tangent: float
     key: Hashable
 
 
@@ -52,23 +55,24 @@ def emitter(frame: Frame, grid: CellGrid, light: Light) -> Emitter:
     if light.kind == "directional":
         towards = axes @ light.towards(frame.camera.basis(), frame.volume.center)
         tangent = math.tan(math.radians(light.aperture)) if tangent < 0 else tangent
-        return _made(
-            False, _disc(params.cones) | free | {"u_lamp": (*towards.tolist(), 0.0), "u_tangent": tangent}
-        )
+        given = {"u_lamp": (*towards.tolist(), 0.0), "u_tangent": tangent}
+        return _made(False, tangent, _disc(params.cones) | free | given)
     place = _in_grid(frame, grid, np.asarray(light.position, dtype=float))
+    radius = _radius(light)
     common: dict[str, Any] = {
-        "u_lamp": (*place.tolist(), 1.0), "u_tangent": tangent, "u_radius": light.radius,
+        "u_lamp": (*place.tolist(), 1.0), "u_tangent": tangent, "u_radius": radius,
         "u_reach": light.reach or 0.0, **free,
     }  # fmt: skip
+    if tangent < 0:
+        tangent = radius / _farthest(grid, place)
     shines = axes @ (np.asarray(light.direction) / max(float(np.linalg.norm(light.direction)), 1e-30))
     if light.kind == "area" and light.shape != "sphere":
         places, part = _surface(light, params.cones)
         if light.shape == "rectangle":
             common["u_shines"] = tuple(shines.tolist())
         in_grid = np.array([_in_grid(frame, grid, p) for p in places])
-        return _made(
-            True, common | _disc(params.cones) | {"u_place": in_grid.astype(np.float32), "u_part": part}
-        )
+        given = {"u_place": in_grid.astype(np.float32), "u_part": part}
+        return _made(True, tangent, common | _disc(params.cones) | given)
     if light.kind == "spot":
         inner = max(0.0, light.spread - light.edge)
         common["u_beam"] = tuple(shines.tolist())
@@ -76,14 +80,29 @@ def emitter(frame: Frame, grid: CellGrid, light: Light) -> Emitter:
         common["u_beam_edge"] = tuple(
             math.cos(math.radians(a)) for a in (light.spread, min(inner, light.spread - 0.01))
         )
-    return _made(False, _disc(params.cones) | common)
+    return _made(False, tangent, _disc(params.cones) | common)
+
+
+def _radius(light: Light) -> float:
+    """Return the radius in mm of a lamp, or of the disc that is as large as it."""
+    if light.kind == "area" and light.shape == "rectangle":
+        return math.sqrt(light.size[0] * light.size[1] / math.pi)
+    if light.kind == "area" and light.shape == "tube":
+        return max(light.radius, 0.5 * light.size[0])
+    return light.radius
+
+
+def _farthest(grid: CellGrid, place: np.ndarray) -> float:
+    """Return the distance in mm from a place to the grid's farthest corner."""
+    extent = np.asarray(grid.size) * grid.edges_mm
+    return float(np.linalg.norm(np.maximum(np.abs(place), np.abs(place - extent))))
 
 
 def _disc(count: int) -> dict[str, Any]:
     return {"u_disc": vogel_disc(count).astype(np.float32), "u_part": 1 / math.sqrt(count)}
 
 
-def _made(points: bool, given: dict[str, Any]) -> Emitter:
+def _made(points: bool, tangent: float, given: dict[str, Any]) -> Emitter:
     zero = (0.0, 0.0, 0.0)
     uniforms = {
         "u_shines": zero, "u_beam": zero, "u_beam_edge": (1.0, -1.0), "u_reach": 0.0, "u_radius": 0.0, **given,
@@ -92,7 +111,7 @@ def _made(points: bool, given: dict[str, Any]) -> Emitter:
         (name, value.tobytes() if isinstance(value, np.ndarray) else value)
         for name, value in sorted(uniforms.items())
     )
-    return Emitter(points, uniforms, (points, key))
+    return Emitter(points, uniforms, tangent, (points, key))
 
 
 def _surface(light: Light, count: int) -> tuple[np.ndarray, float]:

@@ -129,19 +129,19 @@ class ExtinctionParams(TechniqueParams):
             tab="light",
             level="more",
         ),
-    ] = 0.15
+    ] = 0.25
     cones: Annotated[
         int,
         Param(
             "Narrow cones that a lamp's cone is taken apart into; the paper has one, which shows its boxes",
             label="Narrow cones",
             ge=1,
-            le=16,
+            le=64,
             stale="light",
             tab="light",
             level="more",
         ),
-    ] = 7
+    ] = 16
     facing: SlopeShading = 0.7
     specular: Annotated[
         float, Param("Strength of highlights", label="Highlights", ge=0, le=2, soft=(0, 1), tab="light")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...gpu import Device, Variants
+from ...gpu import Device, Program, Variants
 from ..world_light import CellGrid
 from .field import Field, draw_layers, new_texture
 from .lamps import Emitter
@@ -26,6 +26,21 @@ DEPTH_LIMIT = 2.0
 SPREAD, MOST_SPREADS = 2.0, 4
 #: Optical depth of a hundredth of the volume's longest side from which matter counts as dense.
 DENSE = 1.0
+
+
+#: Half size in cells from which a shell counts as far.
+FAR_SHELL = 4
+#: Parts of the way to a lamp, and of the shells; see ``lamp.frag.glsl`` and ``ambient.frag.glsl``.
+WHOLE, FAR, NEAR = 0, 1, 2
+#: Layers of cells that are near, at least and at most: up to where the lamp's cone is as wide as two cells. What is far
+#: of a wider one changes so little from cell to cell that it is worked out for 2^3 cells at once.
+NEAR_LAYERS = (4, 12)
+
+
+def split_of(params: ExtinctionParams, lamp: Emitter) -> int | None:
+    """Return the layers of cells that are near a cell on its way to a lamp; None if the way is not split."""
+    split = max(NEAR_LAYERS[0], math.ceil(1 / max(lamp.tangent, 1e-6)))
+    return split if params.cones > 1 and split <= NEAR_LAYERS[1] else None
 
 
 def densities(longest: float, radius: float) -> tuple[float, float]:
@@ -95,6 +110,23 @@ def lay_shells(grid: CellGrid, count: int, radius: float) -> tuple[np.ndarray, n
     return half, weight
 
 
+def number_close(half: np.ndarray) -> int:
+    """Return how many of the shells are close by; those farther out are added up for 2^3 cells at once."""
+    return max(1, int((half.max(axis=1) < FAR_SHELL).sum()))
+
+
+def _fewer_cells(inner: np.ndarray, outer: np.ndarray) -> np.ndarray:
+    """Return the cells of shells around a cell's middle over those of shells around the middle of 2^3 cells."""
+    boxes = np.vstack([inner, outer])
+    odd, even = (np.diff(np.prod(2 * boxes + extra, axis=1).astype(float)) for extra in (1, 0))
+    return np.asarray(odd / even)
+
+
+def _halved(grid: CellGrid) -> tuple[int, int, int]:
+    x, y, z = grid.size
+    return x // 2, y // 2, z // 2
+
+
 class TermMaker:
     """Fills textures with the light that reaches each cell; keeps its programs."""
 
@@ -124,11 +156,43 @@ class TermMaker:
             Whether it is carried on into the cells of surfaces.
         """
         half, weight = lay_shells(grid, params.shells, radius)
-        program = self._ambient.get((("SHELLS", len(half)),))
+        close = number_close(half)
+        if close == len(half):
+            program = self._shells(field, half, weight, params.shell_strength, WHOLE, spread)
+            yield from self._finish(field, grid, program, texture, spread)
+            return
+        far = new_texture(self.device, _halved(grid), 4, "f2", linear=True)
+        try:
+            inner, outer = half[close - 1], half[close:]
+            program = self._shells(
+                field, outer, weight[close:] * _fewer_cells(inner, outer), params.shell_strength, FAR, False
+            )
+            # What is interpolated from 2^3 cells reaches two cells farther, from their middle three.
+            program.set(u_inner=tuple(inner.tolist()), u_around=field.reach + 3)
+            for done in draw_layers(self.device, program, far):
+                yield 0.3 * done
+            program = self._shells(field, half[:close], weight[:close], params.shell_strength, NEAR, spread)
+            program.bind(u_far=far)
+            for done in self._finish(field, grid, program, texture, spread):
+                yield 0.3 + 0.7 * done
+        finally:
+            far.release()
+
+    def _shells(
+        self, field: Field, half: np.ndarray, weight: np.ndarray, strength: float, part: int, spread: bool
+    ) -> Program:
+        """Return the program of some of the shells."""
+        defines = (("SHELLS", len(half)), ("PART", part), ("WEIGHED", int(spread)))
+        program = self._ambient.get(defines)
         assert field.dimming is not None
         field.dimming.bind(program)
         program.bind(u_near=field.near, u_means=field.dimming.cells)
-        program.set(u_half=half, u_weight=weight.astype(np.float32), u_strength=params.shell_strength)
+        program.set(u_half=half, u_weight=weight.astype(np.float32), u_strength=strength)
+        return program
+
+    def _finish(
+        self, field: Field, grid: CellGrid, program: Program, texture: Any, spread: bool
+    ) -> Generator[float, None, None]:
         if spread:
             yield from self._draw_and_spread(field, grid, program, texture)
         else:
@@ -138,34 +202,63 @@ class TermMaker:
         self, field: Field, grid: CellGrid, params: ExtinctionParams, lamp: Emitter, texture: Any
     ) -> Generator[float, None, None]:
         """Fill a texture with the share of a lamp's light that reaches each cell, yielding the share done."""
-        program = self._lamp.get((("POINTS", int(lamp.points)), ("CONES", params.cones)))
+        split = split_of(params, lamp)
+        if split is None:
+            program = self._cones(field, grid, params, lamp, WHOLE)
+            yield from self._draw_and_spread(field, grid, program, texture)
+            return
+        far = new_texture(self.device, _halved(grid), 1, "nu2", linear=True)
+        try:
+            program = self._cones(field, grid, params, lamp, FAR)
+            # What is interpolated from 2^3 cells reaches two cells farther.
+            program.set(u_split=split, u_around=field.reach + 2)
+            for done in draw_layers(self.device, program, far):
+                yield 0.5 * done
+            program = self._cones(field, grid, params, lamp, NEAR)
+            program.bind(u_far=far)
+            program.set(u_split=split)
+            for done in self._draw_and_spread(field, grid, program, texture):
+                yield 0.5 + 0.5 * done
+        finally:
+            far.release()
+
+    def _cones(
+        self, field: Field, grid: CellGrid, params: ExtinctionParams, lamp: Emitter, part: int
+    ) -> Program:
+        """Return the program of a part of the way to a lamp, all set but for where the parts meet."""
+        program = self._lamp.get((("POINTS", int(lamp.points)), ("CONES", params.cones), ("PART", part)))
         field.matter.bind(program)
         program.bind(u_near=field.near)
         program.set(
             u_edge_mm=grid.edges_mm, u_cell_mm=grid.cell_mm, u_strength=params.strength,
             u_first=max(1.0, max(grid.size) / params.samples), u_growth=params.growth, **lamp.uniforms,
         )  # fmt: skip
-        yield from self._draw_and_spread(field, grid, program, texture)
+        return program
 
     def _draw_and_spread(
         self, field: Field, grid: CellGrid, program: Any, texture: Any
     ) -> Generator[float, None, None]:
         """Draw a term, and carry its light on to the cells of surfaces, as far at any resolution."""
         passes = int(np.clip(round(SPREAD * field.voxel / grid.cell_mm), 1, MOST_SPREADS))
-        scratch = new_texture(self.device, texture.size, texture.components, "nu2")
+        colors = 1 if texture.components == 1 else 3
+        # Light times openness, and openness: as small as that may be, half floats hold it.
+        states = [
+            new_texture(self.device, texture.size, colors + 1, "f2", linear=True)
+            for _ in range(min(passes, 2))
+        ]
         try:
-            source, target = (scratch, texture) if passes % 2 else (texture, scratch)
-            for done in draw_layers(self.device, program, source):
+            for done in draw_layers(self.device, program, states[0]):
                 yield 0.7 * done
-            spread = self._spread.get(())
-            spread.bind(u_matter=field.matter.cells, u_near=field.near)
             for number in range(passes):
-                spread.bind(u_light=source)
+                last = number == passes - 1
+                spread = self._spread.get((("COLORS", colors), ("LAST", int(last))))
+                spread.bind(u_near=field.near, u_light=states[number % 2])
+                target = texture if last else states[1 - number % 2]
                 for done in draw_layers(self.device, spread, target):
                     yield 0.7 + 0.3 * (number + done) / passes
-                source, target = target, source
         finally:
-            scratch.release()
+            for state in states:
+                state.release()
 
     def release(self) -> None:
         """Free the programs."""
