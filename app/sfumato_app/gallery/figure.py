@@ -51,6 +51,13 @@ class Difference:
 
 
 @dataclass(frozen=True)
+class Explicit:
+    """A scene of `extinction` whose light from all around is found by a look at each cell around each cell."""
+
+    scene: Scene
+
+
+@dataclass(frozen=True)
 class Panel:
     """One picture of a figure.
 
@@ -58,14 +65,14 @@ class Panel:
     ----------
     label : str
         The letter below it.
-    picture : Scene, Cuts or Difference
+    picture : Scene, Cuts, Difference or Explicit
         What it shows.
     note : str
         How it was made, a few words.
     """
 
     label: str
-    picture: Scene | Cuts | Difference
+    picture: Scene | Cuts | Difference | Explicit
     note: str
 
 
@@ -116,6 +123,6 @@ def file_name(figure: int | str) -> str:
     return f"{paper + '-' if paper else ''}fig{int(number):02d}.png"
 
 
-def panels(*parts: tuple[Scene | Cuts | Difference, str]) -> tuple[Panel, ...]:
+def panels(*parts: tuple[Scene | Cuts | Difference | Explicit, str]) -> tuple[Panel, ...]:
     """Letter pictures with notes from (a)."""
     return tuple(Panel(chr(ord("a") + k), picture, note) for k, (picture, note) in enumerate(parts))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from sfumato import SfumatoError
 
-from .figure import Cuts, Difference, Figure, Panel
+from .figure import Cuts, Difference, Explicit, Figure, Panel
 
 COMMAND = "sfumato gallery"
 #: Techniques to which a lamp has a direction but no aperture.
@@ -100,7 +100,7 @@ def _section(figure: Figure, picture: str) -> str:
 def _angles(panel: Panel) -> str:
     """Return the lamp's angles where they matter and the note does not tell them."""
     if (
-        isinstance(panel.picture, Cuts | Difference)
+        isinstance(panel.picture, Cuts | Difference | Explicit)
         or "tilt" in panel.note
         or panel.picture.technique_id in (*GRADIENT_SHADED, "extinction", "local-occlusion")
     ):

@@ -10,7 +10,8 @@ from PIL import Image, ImageDraw, ImageFont
 from sfumato import Scene, SfumatoError, Volume, render
 from sfumato.techniques.local_occlusion.levels import cielab
 
-from .figure import Cuts, Difference, Figure, Panel
+from .explicit import draw_explicit
+from .figure import Cuts, Difference, Explicit, Figure, Panel
 
 #: Share of a panel's height for gaps and for the line of letters.
 GAP, LINE = 0.025, 0.075
@@ -50,16 +51,20 @@ def draw_panel(panel: Panel, size: tuple[int, int], frames: int | None = None) -
         return draw_cuts(panel.picture, size)
     if isinstance(panel.picture, Difference):
         return draw_difference(panel.picture, size, frames)
-    scene: Scene = panel.picture if frames is None else panel.picture.with_(frames=frames)
-    return Image.fromarray(np.ascontiguousarray(render(scene, size)[..., :3]))
+    if isinstance(panel.picture, Explicit):
+        return Image.fromarray(draw_explicit(_with_frames(panel.picture.scene, frames), size))
+    return Image.fromarray(np.ascontiguousarray(render(_with_frames(panel.picture, frames), size)[..., :3]))
+
+
+def _with_frames(scene: Scene, frames: int | None) -> Scene:
+    return scene if frames is None else scene.with_(frames=frames)
 
 
 def draw_difference(difference: Difference, size: tuple[int, int], frames: int | None = None) -> Image.Image:
     """Draw how far a scene's picture is from another's."""
     looks = []
     for scene in (difference.scene, difference.truth):
-        shown = scene if frames is None else scene.with_(frames=frames)
-        looks.append(cielab(np.clip(render(shown, size, linear=True)[..., :3], 0, 1)))
+        looks.append(cielab(np.clip(render(_with_frames(scene, frames), size, linear=True)[..., :3], 0, 1)))
     away = np.linalg.norm(looks[0] - looks[1], axis=-1)
     return Image.fromarray(np.uint8(np.rint(255 * np.clip(away / difference.white, 0, 1)))).convert("RGB")
 

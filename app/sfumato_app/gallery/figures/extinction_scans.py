@@ -5,7 +5,7 @@ from __future__ import annotations
 from sfumato import Light, Scene, TransferFunction
 from sfumato_samples import load
 
-from ..figure import Figure, panels
+from ..figure import Difference, Figure, panels
 from ..setting import look
 from .extinction_places import lit_by
 from .extinction_terms import BONE, KEY, bones
@@ -78,15 +78,17 @@ def figure_11() -> Figure:
 def figure_12() -> Figure:
     """Few samples."""
     few = {"cone_angle": 6.0, "samples": 12, "growth": 0.0, "resolution": 128}
+    one, narrow = (lit_by(bones(), KEY, cones=n, **few) for n in (1, 16))
     return Figure(
         12,
         "Twelve samples a cone",
-        "With one cone, as in the paper, the boxes that stand for it show at the shadows' edges; with seven narrow "
-        "ones their edges lie at different places, and average.",
+        "With one cone, as in the paper, the boxes that stand for it show at the shadows' edges; with sixteen "
+        "narrow ones their edges lie at different places, and average. (c) is bright where both differ.",
         panels(
-            (lit_by(bones(), KEY, cones=1, **few), "one cone"),
-            (lit_by(bones(), KEY, cones=7, **few), "seven narrow ones"),
+            (one, "one cone"),
+            (narrow, "sixteen narrow ones"),
+            (Difference(one, narrow, 20.0), "how far they are apart; white: 20 in CIELAB"),
         ),
-        (360, 420),
+        (300, 350),
         "Schlegel2011",
     )
