@@ -79,7 +79,7 @@ class Neighbourhood:
         field, grid, params = self._field, self._grid, self._frame.params
         if self._looking is None:
             return self._terms.ambient(field, grid, params, self._radius, self._texture, spread=False)
-        program = self._looking.get((("RADIUS", RADIUS),))
+        program = self._looking.get((("RADIUS", RADIUS), ("WEIGHED", 0)))
         assert field.dimming is not None
         program.bind(u_source=field.dimming.cells, u_near=field.near)
         program.set(u_edge_mm=grid.cell_mm, u_strength=params.shell_strength)

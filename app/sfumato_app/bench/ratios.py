@@ -61,6 +61,7 @@ RATIOS = (
     Ratio("extinction, light at rest / ray casting", "extinction-still", "raycast", Goal(1.3)),
     Ratio("extinction, light at rest / ray casting", "extinction-still", "raycast", Goal(1.15, gpu=True)),
     Ratio("extinction, light moving / ray casting", "extinction-moving", "raycast", Goal(1.8)),
+    Ratio("extinction, a drag's frame / ray casting", "extinction-drag", "raycast"),
     Ratio("extinction, ambient alone / ray casting", "extinction-ambient", "raycast", Goal(1.8)),
     Ratio("extinction with slopes / Phong", "extinction", "raycast-phong"),
     *(

@@ -112,7 +112,8 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         ("extinction", "extinction-based light, slopes shaded, light at rest", _extinction()),
         ("extinction-still", "... without slopes", _extinction(facing=0.0)),
         ("extinction-ambient", "... light from all around alone", _extinction(facing=0.0, lamp=False)),
-        ("extinction-moving", "... its lamp moving, 64 cells a side", _moving_extinction),
+        ("extinction-moving", "... its lamp moving, 64 cells a side", _moving_extinction()),
+        ("extinction-drag", "... its lamp moving, at drag quality", _moving_extinction(DRAG)),
         *((f"extinction-build-{n}", f"... light made anew, {n} cells a side", _building(n)) for n in CELLS),
         ("extinction-shells", "... 3 shells, 64 cells a side", _neighbourhood(explicit=False)),
         ("extinction-explicit", "... each cell within 7, 64 cells a side", _neighbourhood(explicit=True)),
@@ -168,9 +169,11 @@ def _extinction(facing: float | None = None, lamp: bool = True) -> Callable[[Sta
     return lambda stage, setting: Ours(stage.renderer, setting, "extinction", changes=changes)
 
 
-def _moving_extinction(stage: Stage, setting: Setting) -> Contender:
+def _moving_extinction(quality: Quality = FULL) -> Callable[[Stage, Setting], Contender]:
     changes = {"technique.facing": 0.0, "technique.resolution": 64}
-    return MovingLight(stage.renderer, setting, "extinction", "rotation", changes=changes)
+    return lambda stage, setting: MovingLight(
+        stage.renderer, setting, "extinction", "rotation", quality=quality, changes=changes
+    )
 
 
 def _building(cells: int) -> Callable[[Stage, Setting], Contender]:
