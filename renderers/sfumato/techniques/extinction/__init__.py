@@ -14,8 +14,9 @@ the sampling of a cone sets the darkness; a cone may be taken apart into narrow 
 paper's single one dims by the mean of what is in the way, which is too dark behind edges); what counts of dense
 matter for light from all around is limited (`terms.DEPTH_LIMIT`); light is carried on into the cells that a
 surface runs through; Eq. 5 read literally makes a red wall swallow red light, ours makes it give red light off;
-narrow cones start beside each other within a cell, and along slanting ways no section is longer than its cone stays in
-its box, so that small lamps' shadows have no steps.
+of wide lamps' cones and of the shells, what is far is worked out for 2^3 cells at once (`terms`); narrow cones
+start beside each other within a cell, and along slanting ways no section is longer than its cone stays in its box,
+so that small lamps' shadows have no steps.
 
 Limits: shadows are as sharp as the cells are small; behind many small things in a wide cone they are too dark, with the
 paper's single cone more than with narrow ones (``docs/extinction.md`` has both errors against the ray-traced cone).
