@@ -44,16 +44,22 @@ class Baker:
         self._seen: Hashable = None
         self.filled = 0
 
-    def pays(self, frame: Frame, key: Hashable) -> bool:
-        """Tell whether a frame's light is that of the frame before, and its volume small enough.
+    def pays(self, frame: Frame, cell_mm: float, key: Hashable) -> bool:
+        """Tell whether a frame's light is that of the frame before, no finer than voxels, and its volume small enough.
 
         On a GPU it is not worth its memory: look-ups wait for memory there.
+
+        Parameters
+        ----------
+        cell_mm : float
+            Edge of the light cache's cells.
         """
         seen, self._seen = self._seen, key
         if self._kept.find(key) is not None:
             return True
         needed = BYTES_A_VOXEL * frame.volume.data.size
-        return seen == key and self.device.is_software and needed <= self._kept.budget
+        fits = needed <= self._kept.budget and cell_mm >= frame.volume.unit_distance
+        return seen == key and self.device.is_software and fits
 
     def volume(
         self, frame: Frame, material: Material, key: Hashable, lights: int, bind: Callable[[Program], None]

@@ -201,7 +201,7 @@ class ExtinctionPainter:
         params, own = frame.params, min(len(frame.scene.active_lights), OWN_LAMPS)
         sloped = params.specular > 0 or params.facing > 0
         bind = functools.partial(self._bind_world, frame, plan.grid, world, own)
-        if not sloped and self.baker.pays(frame, key := _baked_key(frame, material, plan)):
+        if not sloped and self.baker.pays(frame, plan.grid.cell_mm, key := _baked_key(frame, material, plan)):
             volume = yield from self.baker.volume(frame, material, key, own, bind)
             program = self.marcher.program(Variant(shading=BAKED), material)
             bind_material(program, material, frame)
