@@ -54,7 +54,7 @@ vec4 arriving(sampler2D state, int first) {
 
 void main() {
 #if HOLLOW
-    #define PASS(state, group) arriving(state, 4 * group)
+    #define PASS(came, group) came
 #else
 #if GEOMETRY
     vec2 passed = cover_passes(ivec2(gl_FragCoord.xy));
@@ -65,22 +65,27 @@ void main() {
     vec3 enter = u_enter * vec3(gl_FragCoord.xy, 1.0);
     vec3 leave = u_leave * vec3(gl_FragCoord.xy, 1.0);
     vec2 range = kept_range(enter, leave - enter, vec2(0.0, 1.0));
-    float s0 = volume_value(enter), s1 = volume_value(leave);
+    vec3 middle = 0.5 * (enter + leave);
+    float s0 = volume_value(enter), s1 = volume_value(middle), s2 = volume_value(leave);
 #ifdef TRANSFER_2D
-    float tau = classify(s0, s1, length(volume_gradient(0.5 * (enter + leave)))).a;
+    float steep = length(volume_gradient(middle));
+    vec2 tau = vec2(classify(s0, s1, steep).a, classify(s1, s2, steep).a);
 #else
-    float tau = classify_extinction(s0, s1);
+    vec2 tau = vec2(classify_extinction(s0, s1), classify_extinction(s1, s2));
 #endif
-    float absorbed = tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
+    // Optical depths of the slab's halves along the axis.
+    vec2 halves = tau * u_thickness * max(vec2(min(range.y, 0.5) - range.x, range.y - max(range.x, 0.5)), 0.0);
+    float absorbed = halves.x + halves.y;
 #else
+    const vec2 halves = vec2(0.0);
     const float absorbed = 0.0;
 #endif
     // exp(-absorbed * secant) of all directions from three of them, by Lagrange's polynomial.
     vec3 left = exp(-absorbed * u_secants) * passed.x;
-    #define PASS(state, group) (arriving(state, 4 * group) * (left.x * u_weight0[group] + left.y * u_weight1[group] + left.z * u_weight2[group]))
+    #define PASS(came, group) (came * (left.x * u_weight0[group] + left.y * u_weight1[group] + left.z * u_weight2[group]))
 #endif
-    #define TAKE(result, state, group) result = PASS(state, group); sum += result * u_share[group];
-    vec4 sum = vec4(0.0);
+    #define TAKE(result, state, group) came = arriving(state, 4 * group); result = PASS(came, group); sum += came * u_share[group];
+    vec4 sum = vec4(0.0), came;
     TAKE(o_state0, u_state0, 0)
 #if DIRECTIONS > 4
     TAKE(o_state1, u_state1, 1)
@@ -98,9 +103,10 @@ void main() {
     TAKE(o_state5, u_state5, 5)
 #endif
 #if HOLLOW
-    const float open = 1.0;
+    const float open = 1.0, half_left = 1.0;
 #else
+    float half_left = exp(-halves.x * u_secants.y) * 0.5 * (1.0 + passed.x);
     float open = max(exp(-2.0 * absorbed) * passed.y * passed.y, LEAST);
 #endif
-    o_light = vec2(dot(sum, vec4(1.0)) * open, open);
+    o_light = vec2(dot(sum, vec4(1.0)) * half_left * open, open);
 }

@@ -26,7 +26,7 @@ from ..gpu import Device, LayerTarget, Program, Variants
 from .casters import VOLUME_ALONE, Casters, cover_corners
 from .frame import Frame
 from .marcher import Material, bind_material, blocks_along, material_defines, visible_corners
-from .stack import PAD, Lattice, Stack, View
+from .stack import Lattice, Stack, View
 from .sweep import affine, texture_from_view
 from .tile_texture import TileTexture
 from .tiles import GROUP, TILE, TileLists, list_cone_tiles
@@ -134,7 +134,7 @@ class LightGrid:
         matrix[:2] /= self.lattice.texel
         matrix[2, 3] -= stack.z0
         matrix[2] /= stack.step
-        matrix[2, 3] += 0.5
+        matrix[2, 3] += 1.0  # layer 0 lies half a slab before the first plane, the others in the middle of slabs
         return np.asarray(matrix / np.append(size, 1)[:, None])
 
     @functools.cached_property
@@ -302,7 +302,7 @@ class LightSweeper:
             full.bind(u_cover=casters.cover)
             full.set(u_opacity=casters.opacity)
         hollow = self._programs.get((*number, ("HOLLOW", 1), ("GEOMETRY", 0), ("VOLUME", 0)))
-        inner, size = lattice.border - PAD, lattice.size
+        inner, size = lattice.border - lattice.pad, lattice.size
         for program in (full, hollow):
             program.set(
                 u_extent=tuple(map(float, size)), u_tile_size=TILE, u_columns_low=self._lists.low, u_base=(0, 0),

@@ -99,6 +99,8 @@ class Lattice:
         grid's pattern on surfaces that light grazes averages out.
     border : int
         Texels on each side beyond the volume's projection.
+    pad : int
+        How many of them, next to the projection, are swept; those farther out are always clear.
     """
 
     stack: Stack
@@ -108,6 +110,7 @@ class Lattice:
     rear: bool
     offset: tuple[float, float]
     border: int
+    pad: int = PAD
 
     @staticmethod
     def over(
@@ -118,18 +121,21 @@ class Lattice:
         rear: bool,
         offset: tuple[float, float],
         reach: int,
+        ahead: int = 0,
     ) -> Lattice:
         """Return the lattice of a light whose kernel's centroid lies `mean` slice distances along its rotation (deg).
 
-        ``reach`` is how many texels the footprint reaches to each side.
+        ``reach`` is how many texels the footprint reaches to each side, ``ahead`` how many slabs nearer to the
+        light than a sample the ray caster reads: there the sample's column may lie beyond the projection.
         """
-        border = PAD + reach + 1
+        per_plane = mean * stack.step / texel
+        pad = PAD + math.ceil(ahead * abs(per_plane))
+        border = pad + reach + 1
         extent = np.ceil((stack.high - stack.low) / texel - 1e-9).astype(int) + 2 * border
         phi, sign = math.radians(rotation), -1 if rear else 1
-        per_plane = mean * stack.step / texel
         shear = tuple(sign * round(per_plane * c * SHEAR_UNIT) for c in (math.cos(phi), math.sin(phi)))
         return Lattice(
-            stack, texel, (int(extent[0]), int(extent[1])), (shear[0], shear[1]), rear, offset, border
+            stack, texel, (int(extent[0]), int(extent[1])), (shear[0], shear[1]), rear, offset, border, pad
         )
 
     @property

@@ -20,7 +20,7 @@ from .casters import VOLUME_ALONE, Casters, cover_corners
 from .footprint import Stencil, effective_secant, kernel_moments, stencil_for
 from .frame import Frame
 from .marcher import Material, bind_material, blocks_along, material_defines
-from .stack import PAD, Lattice, Stack
+from .stack import Lattice, Stack
 from .tile_texture import TileTexture
 from .tiles import TILE, TileLists, list_tiles
 
@@ -91,7 +91,9 @@ def lamps_for(
     for (tilt, rotation), aperture, m, stencil, every in zip(
         angles, apertures, moments, stencils, rhythm, strict=True
     ):
-        lattice = Lattice.over(stack, texel, m.mean, rotation, tilt > 90, frame.lattice_jitter, reach)
+        lattice = Lattice.over(
+            stack, texel, m.mean, rotation, tilt > 90, frame.lattice_jitter, reach, near_slabs(frame)
+        )
         tiles = list_tiles(lattice, blocks, max(m.along, m.across) * area, near_slabs(frame))
         lamps.append(Lamp(lattice, stencil, effective_secant(tilt, aperture), tiles, every))
     return tuple(lamps)
@@ -158,7 +160,7 @@ class Sweeper:
         self._clear = 0.0 if form == FORMS["additive"] else 1.0
         self._to_texture = texture_from_view(frame, lamp.lattice.stack)
         self._tiles.upload(lamp.tiles)
-        border = lamp.lattice.border - PAD
+        border = lamp.lattice.border - lamp.lattice.pad
         taps = np.clip(np.array(lamp.stencil.taps, dtype=np.int32), -border, border)
         self._farthest = border - int(np.abs(taps).max())
         self._pairs = []

@@ -35,7 +35,7 @@ uniform float u_cover_opacity;
 
 // Light that geometry between a point of a lamp's texture and the place where its light is asked for lets through.
 float near_cover(sampler2D cover, int l, vec3 at) {
-    float s = at.z * (u_cover_slabs[l] + 1.0) - 0.5, begin = max(s - u_cover_way[l], 0.0), covered = 0.0;
+    float s = at.z * (u_cover_slabs[l] + 1.0) - 1.0, begin = max(s - u_cover_way[l], 0.0), covered = 0.0;
     vec2 size = vec2(u_cover_size[l]), texel = clamp(at.xy * size, vec2(0.5), size - 0.5);
     vec2 picture = vec2(textureSize(cover, 0));
     // Which slab's corner: by floats, since software renderers divide integers one by one.
