@@ -18,7 +18,7 @@ from qtpy.QtCore import QObject, QThread, Signal
 
 from sfumato import GpuError, Scene
 from sfumato.exposure import exposure_for
-from sfumato.techniques.frame import FULL, Quality
+from sfumato.techniques.frame import DRAG, FULL, Quality
 
 from .jobs import (
     STILL_FRAMES,
@@ -35,7 +35,7 @@ from .wording import one_line, remedy_of
 
 #: Qualities while the user drags, finest first; the worker keeps to the finest that is quick enough.
 DRAG_LADDER = (
-    Quality(scale=0.5, step=2.0, light=2.0, progressive=True),
+    DRAG,
     Quality(scale=0.35, step=3.0, light=3.0, progressive=True),
     Quality(scale=0.25, step=4.0, light=4.0, progressive=True),
 )

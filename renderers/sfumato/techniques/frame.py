@@ -41,7 +41,7 @@ class Quality:
 #: Everything that was asked for.
 FULL = Quality()
 #: While the user drags.
-DRAG = Quality(scale=0.5, step=2.0, light=2.0, progressive=True)
+DRAG = Quality(scale=0.5, step=2.0, light=2.25, progressive=True)
 
 
 @dataclass

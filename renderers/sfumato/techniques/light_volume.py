@@ -40,11 +40,12 @@ PASSES_PER_PIECE = 16
 #: Largest step of a direction from plane to plane, in texels: beyond it nothing is resolved.
 MAX_OFFSET = 12.0
 #: How far towards the light from a sample, in texels, its texture is asked; the ray caster looks through the way there.
-NEAR_TEXELS = 1.5
+NEAR_TEXELS = 1.75
 #: The same for the steepest light.
 MAX_NEAR_TEXELS = 6.0
-#: Half angles in degrees up to which a lamp's texels are as large as voxels, and from which they are SOFT_TEXELS wide.
-SHARP_APERTURE, SOFT_APERTURE, SOFT_TEXELS = 8.0, 26.0, 1.5
+#: Half angles in degrees up to which a lamp's texels are SHARP_TEXELS voxels wide, and from which SOFT_TEXELS.
+SHARP_APERTURE, SOFT_APERTURE = 8.0, 26.0
+SHARP_TEXELS, SOFT_TEXELS = 0.91, 1.25
 #: Slabs of which one takes its directions between texels.
 EXACT_EVERY = 2
 _GOLDEN_ANGLE = math.pi * (3 - math.sqrt(5))
@@ -167,9 +168,9 @@ class LightGrid:
 def texel_of(frame: Frame, aperture: float) -> float:
     """Return the edge of a lamp's texels in mm: fine shadows of wide cones are close by, where it is not asked."""
     share = (aperture - SHARP_APERTURE) / (SOFT_APERTURE - SHARP_APERTURE)
-    widened = 1 + (SOFT_TEXELS - 1) * min(1.0, max(0.0, share))
+    width = SHARP_TEXELS + (SOFT_TEXELS - SHARP_TEXELS) * min(1.0, max(0.0, share))
     resolution = getattr(frame.params, "resolution", 1.0)  # techniques that borrow these shadows have none
-    return float(frame.volume.min_spacing / resolution * widened * frame.quality.light)
+    return float(frame.volume.min_spacing / resolution * width * frame.quality.light)
 
 
 def grid_for(

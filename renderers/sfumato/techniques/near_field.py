@@ -20,7 +20,7 @@ from .light_volume import MAX_NEAR_TEXELS, NEAR_TEXELS, LightGrid
 #: Numbers of samples that shaders are compiled for; the first suffices but for steep light and thin slabs.
 SAMPLES = (4, 6)
 #: Depth before a facing surface, in texels, at which light is asked for.
-CLEAR_TEXELS = 1.25
+CLEAR_TEXELS = 1.45
 #: Largest step of the way's begin, in voxels; slabs thinner than half of it are taken together.
 MAX_STEP = 0.75
 

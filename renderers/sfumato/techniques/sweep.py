@@ -28,6 +28,8 @@ from .tiles import TILE, TileLists, list_tiles
 MAX_RHYTHM = 4
 RHYTHM_VARIANCE = 0.1
 
+#: Texels per voxel where a scene asks for one: a shadow's edge of a voxel is drawn by more than two texels.
+TEXELS_PER_VOXEL = 1.25
 #: Most slabs that are looked through close to a sample.
 MAX_NEAR = 4
 
@@ -65,7 +67,7 @@ def lamps_for(
     casters: Casters = VOLUME_ALONE,
 ) -> tuple[Lamp, ...]:
     """Return lattice, stencil and tiles of each light, given by (tilt, rotation) and aperture in degrees."""
-    texel = frame.volume.min_spacing / frame.params.resolution * frame.quality.light
+    texel = texel_of(frame)
     # The nominal step in place of one of the two: a drag with fewer slabs blurs as much as the full picture.
     area = stack.step * frame.nominal_step / texel**2
     moments = [
@@ -99,6 +101,12 @@ def lamps_for(
     return tuple(lamps)
 
 
+def texel_of(frame: Frame) -> float:
+    """Return the edge of the lattice's texels in mm."""
+    per_voxel = TEXELS_PER_VOXEL * frame.params.resolution
+    return float(frame.volume.min_spacing / per_voxel * frame.quality.light)
+
+
 def near_slabs(frame: Frame) -> int:
     """Return in how many slabs before a sample the ray caster itself looks for occluders: those that a texel spans.
 
@@ -106,8 +114,7 @@ def near_slabs(frame: Frame) -> int:
     """
     if FORMS[frame.params.occlusion]:
         return 0
-    texels = frame.quality.light / (frame.params.resolution * frame.scene.step * frame.quality.step)
-    return max(1, min(MAX_NEAR, math.ceil(float(texels) - 1e-6)))
+    return max(1, min(MAX_NEAR, math.ceil(texel_of(frame) / frame.step - 1e-6)))
 
 
 def filter_rhythm(variance: float) -> int:
