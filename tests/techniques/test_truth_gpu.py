@@ -103,10 +103,10 @@ def test_mirrored_scene_gives_the_mirrored_picture(form: str, parallel: bool) ->
     mirrored = replace(
         scene, volume=Volume(volume.data[:, :, ::-1].copy()), lights=(replace(light, rotation=45),)
     )
-    # The spiral on which the cone's directions lie has no mirror symmetry.
-    np.testing.assert_allclose(
-        picture(scene, 32)[:, ::-1], picture(mirrored, 32), atol=0.045 if form == "cone" else 4e-3
-    )
+    one, other = picture(scene, 32)[:, ::-1], picture(mirrored, 32)
+    # The spiral on which the cone's sixteen directions lie has no mirror symmetry: single pixels differ.
+    np.testing.assert_allclose(one, other, atol=0.06 if form == "cone" else 4e-3)
+    assert np.sqrt(np.mean((one - other) ** 2)) < 0.006
 
 
 @pytest.mark.parametrize("form", FORMS)

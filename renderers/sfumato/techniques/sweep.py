@@ -28,8 +28,6 @@ from .tiles import TILE, TileLists, list_tiles
 MAX_RHYTHM = 4
 RHYTHM_VARIANCE = 0.1
 
-#: Texels per voxel where a scene asks for one: a shadow's edge of a voxel is drawn by more than two texels.
-TEXELS_PER_VOXEL = 1.25
 #: Most slabs that are looked through close to a sample.
 MAX_NEAR = 4
 
@@ -103,8 +101,7 @@ def lamps_for(
 
 def texel_of(frame: Frame) -> float:
     """Return the edge of the lattice's texels in mm."""
-    per_voxel = TEXELS_PER_VOXEL * frame.params.resolution
-    return float(frame.volume.min_spacing / per_voxel * frame.quality.light)
+    return float(frame.volume.min_spacing / frame.params.resolution * frame.quality.light)
 
 
 def near_slabs(frame: Frame) -> int:

@@ -9,6 +9,22 @@ from ...scene.params import Param
 from ...scene.scene import TechniqueParams
 from ..phong import Shininess
 
+#: How fine the light's grid is.
+Resolution = Annotated[
+    float,
+    Param(
+        "Texels of the occlusion buffer per voxel",
+        label="Shadow resolution",
+        unit="texel/voxel",
+        ge=0.1,
+        le=4,
+        soft=(0.25, 2),
+        stale="light",
+        tab="light",
+        level="more",
+    ),
+]
+
 
 @dataclass(frozen=True)
 class ShadowParams(TechniqueParams):
@@ -30,25 +46,15 @@ class ShadowParams(TechniqueParams):
     ambient: Annotated[
         float, Param("Share of each lamp that no shadow takes away", label="Ambient", ge=0, le=1, tab="light")
     ] = 0.0
-    resolution: Annotated[
-        float,
-        Param(
-            "Texels of the occlusion buffer per voxel",
-            label="Shadow resolution",
-            unit="texel/voxel",
-            ge=0.1,
-            le=4,
-            soft=(0.25, 2),
-            stale="light",
-            tab="light",
-            level="more",
-        ),
-    ] = 1.0
+    resolution: Resolution = 1.0
 
 
 @dataclass(frozen=True)
 class OcclusionParams(ShadowParams):
     """What the published occlusion sweeps share."""
+
+    # An edge of one voxel needs more than two texels, or it loses contrast (docs/candidates.md).
+    resolution: Resolution = 1.25
 
     occlusion: Annotated[
         str,
