@@ -95,6 +95,17 @@ class Device:
         """Attach one layer of an array or 3D texture to the bound framebuffer (moderngl cannot)."""
         self._attach_layer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + attachment, texture.glo, 0, layer)
 
+    def clear(self, fbo: Any, *values: float) -> None:
+        """Fill a framebuffer with a value, all of it.
+
+        By itself moderngl fills no more than the scissor of the framebuffer that was used last.
+        """
+        used = self.ctx.fbo
+        fbo.use()
+        fbo.clear(*values)
+        if used is not None and not isinstance(used.mglo, moderngl.InvalidObject):
+            used.use()
+
     def clear_attachment(self, attachment: int, value: float) -> None:
         """Fill one colour attachment of the bound framebuffer with a value (moderngl clears them all)."""
         self._clear_buffer(GL_COLOR, attachment, (ctypes.c_float * 4)(value, value, value, value))

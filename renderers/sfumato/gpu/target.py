@@ -34,7 +34,7 @@ class Target:
 
     def clear(self, red: float = 0.0, green: float = 0.0, blue: float = 0.0, alpha: float = 0.0) -> None:
         """Fill with one value."""
-        self.fbo.clear(red, green, blue, alpha)
+        self.device.clear(self.fbo, red, green, blue, alpha)
 
     def write(self, pixels: np.ndarray) -> None:
         """Upload a picture; float32, shape (height, width, 4), row 0 on top."""

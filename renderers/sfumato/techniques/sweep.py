@@ -186,7 +186,7 @@ class Sweeper:
                 u_tile_size=TILE, u_columns_low=lamp.tiles.low, u_inner=(border, border),
                 u_outer=(size[0] - border, size[1] - border),
             )  # fmt: skip
-        self._targets[0].plain.clear(self._clear, -1.0)
+        self.device.clear(self._targets[0].plain, self._clear, -1.0)
 
     def load(self, kept: Any) -> None:
         """Go on from a state that `keep` kept."""
@@ -207,7 +207,7 @@ class Sweeper:
             (index + 1, index, index + 2) if lattice.rear else (index, index + 1, index - 1)
         )
         # Where no tile is drawn nothing stands in the light.
-        target.plain.clear(self._clear, -1.0)
+        self.device.clear(target.plain, self._clear, -1.0)
         full, hollow = self._lamp.tiles.of_slab(index)
         if full[1] + hollow[1] == 0 and not self.fills:
             return

@@ -82,7 +82,7 @@ class CoverMaker:
         # What a texel of a plane lets through of slanting light is narrower than the texel.
         texel_area = lattice.texel**2 * abs(float(towards @ lattice.stack.view.axes[2]))
         fbo = self.device.ctx.framebuffer([texture])
-        fbo.clear()
+        self.device.clear(fbo)
         try:
             for surfels in casters:
                 program.set(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from ...scene.params import Param
-from ..multidirectional.params import OcclusionParams
+from ..multidirectional.params import OcclusionParams, Resolution
 
 #: What `show` may be.
 TERMS = ("picture", "geometry", "volume", "occlusion", "partial", "vicinity")
@@ -23,6 +23,7 @@ def _cast(meaning: str, label: str) -> Any:
 class CombinedParams(OcclusionParams):
     """How volume and geometry shade each other, and what surfaces look like."""
 
+    resolution: Resolution = 1.0
     light: Annotated[
         str,
         Param(
