@@ -17,7 +17,7 @@ from sfumato_app.bench import main
 from sfumato_app.bench.measure import Result, Spread
 from sfumato_app.bench.phantom import phantom
 from sfumato_app.bench.ratios import RATIOS, Goal, outcomes
-from sfumato_app.bench.rows import rows
+from sfumato_app.bench.rows import rows, tube_rows
 from sfumato_app.bench.setting import Setting
 
 TINY = ["--size", "32", "--viewport", "64", "--rounds", "1"]
@@ -135,6 +135,7 @@ def test_goals_are_judged_by_the_clock_that_counts():
 def test_ratios_refer_to_rows():
     ids = [row.id for row in rows(Setting())]
     assert len(set(ids)) == len(ids)
+    ids += [row.id for row in tube_rows(Setting())]
     assert all(ratio.above in ids and ratio.below in ids for ratio in RATIOS)
     assert not Goal(4.0, at_least=True).met(3.9)
 

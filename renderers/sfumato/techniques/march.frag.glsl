@@ -206,7 +206,12 @@ void main() {
             vec3 c = lit(i, front, back, color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
 #elif SHADING == 4
             float z_mid = 0.5 * (z + z_next);
+#if FACING || SPECULAR
             vec3 c = world_lit(color, alpha, a + b * z_mid, ray.origin + ray.direction * z_mid, view);
+#else
+            // At both ends, as light that lies beside the values is read: both look the same.
+            vec3 c = alpha * color * (0.5 * (world_light(a + b * z) + world_light(a + b * z_next)));
+#endif
 #elif SHADING == 5
             vec3 c = local_lit(color, alpha, a + b * (0.5 * (z + z_next)), view);
 #elif SHADING == 2

@@ -171,6 +171,32 @@ float all_through(vec3 place, vec4 way, float begin, out float open) {
     return sum;
 }
 
+#if PART == 2
+const float ABOUT_AS_STEEP = 0.85;
+
+int second(vec3 steep, int first) {
+    int a = first == 0 ? 1 : 0, b = first == 2 ? 1 : 2;
+    return steep[a] >= steep[b] ? a : b;
+}
+
+// Light that reaches a place, in cells, through what is near: up to a plane across an axis, u_split layers from the middle of its
+// 2^3 cells towards the lamp; and through what is far, from where its way meets that plane. `forward` tells the way's side.
+float past_plane(vec3 place, vec3 middle, vec4 way, int axis, float forward) {
+    vec3 to_place = turned(place - middle, axis), slope = turned(way.xyz / u_edge_mm, axis);
+    slope /= forward > 0.0 ? max(slope.x, 1e-3) : min(slope.x, -1e-3);
+    float stop = float(u_split) - to_place.x * sign(forward);
+    vec3 at_far = middle + turned_back(vec3(0.0, to_place.yz - slope.yz * to_place.x), axis);
+    float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / way.w, near = 0.0;
+    mat2x3 sides = across(way.xyz);
+    // All narrow cones: one wide one's boxes would be rounded alike in all cells, and light jump where they turn over.
+    for (int k = 0; k < CONES; ++k) {
+        vec3 along = normalize(way.xyz + sides * (u_disc[k] * tangent));
+        near += through(place, axis, along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], 0.5, stop) / float(CONES);
+    }
+    return near * textureLod(u_far, at_far / vec3(u_cells), 0.0).r;
+}
+#endif
+
 void main() {
     ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer);
 #if PART == 1
@@ -195,16 +221,16 @@ void main() {
     // 2. What is in the way, cone by cone.
     float open, sum = all_through(place, way, 0.5, open);
 #if PART == 2
-    // Far begins at a plane that is the same for all 2^3 cells, and rays through it go on from where they meet it.
+    // Far begins at a plane that is the same for all 2^3 cells.
     vec3 middle = 2.0 * floor(0.5 * vec3(cell)) + 1.0;
-    vec3 main_way = way_to_lamp(middle * u_edge_mm).xyz;
-    int axis = dominant(main_way);
-    vec3 to_place = turned(place - middle, axis), slope = turned(way.xyz / u_edge_mm, axis);
-    slope /= main_way[axis] > 0.0 ? max(slope.x, 1e-3) : min(slope.x, -1e-3);
-    float stop = float(u_split) - to_place.x * sign(main_way[axis]);
-    vec3 at_far = middle + turned_back(vec3(0.0, to_place.yz - slope.yz * to_place.x), axis);
-    float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / way.w;
-    sum = open * textureLod(u_far, at_far / vec3(u_cells), 0.0).r * through(place, axis, way.xyz, tangent, way.w, vec2(0.0), 0.5, stop);
+    vec3 main_way = way_to_lamp(middle * u_edge_mm).xyz, steep = abs(main_way / u_edge_mm);
+    int axis = dominant(main_way), other = second(steep, axis);
+    float tie = steep[other] / steep[axis];
+    sum = past_plane(place, middle, way, axis, main_way[axis]);
+    // Where two axes are about as steep both count, so that nothing jumps when a lamp goes from one to the other.
+    if (tie > ABOUT_AS_STEEP)
+        sum = mix(sum, past_plane(place, middle, way, other, main_way[other]), 0.5 * smoothstep(ABOUT_AS_STEEP, 1.0, tie));
+    sum *= open;
 #endif
     o_light = openness * vec2(arriving * max(sum, u_unshadowed * open), 1.0);
 #endif
