@@ -233,7 +233,12 @@ def _check_history(window: MainWindow) -> None:
 
 
 @pytest.mark.parametrize(
-    ("count", "seed"), [(300, 8), pytest.param(5000, 88, marks=[pytest.mark.slow, pytest.mark.timeout(3000)])]
+    ("count", "seed"),
+    [
+        (150, 8),
+        pytest.param(300, 8, marks=pytest.mark.slow),
+        pytest.param(5000, 88, marks=[pytest.mark.slow, pytest.mark.timeout(3000)]),
+    ],
 )
 def test_anything_may_be_done(make_window: Any, qtbot: QtBot, count: int, seed: int) -> None:
     start = Scene(volume=ball(20), transfer=solid(), technique="raycast-phong")
