@@ -3,7 +3,7 @@
 // POINTS     0: the lamp is a disc seen from each cell (a parallel light's cone, a sphere), 1: it is given by places on it
 // CONES      the lamp's cone is taken apart into so many narrow ones
 // PART       0: all of the way to the lamp. Of a wide cone, where what is far is soft, 1: only what is far, for each 2^3 cells;
-//            2: what is near, by one cone, times what is far
+//            2: what is near, times what is far
 #include "sums"
 
 uniform int u_layer;
@@ -12,7 +12,7 @@ uniform vec3 u_edge_mm;              // a cell's edges in mm
 uniform float u_cell_mm;             // their mean, to which the cells' optical depths refer
 uniform vec4 u_lamp;                 // in mm from the corner of cell 0 along the volume's axes: place (w = 1), or unit vector towards it (w = 0)
 uniform float u_tangent;             // of the lamp's half angle; < 0: from its radius
-uniform float u_radius;              // mm; of a lamp given by places that of a sphere which is as wide
+uniform float u_radius;              // mm (POINTS 0)
 uniform vec2 u_disc[CONES];          // places of the narrow cones in the unit disc, spread over a cell as well
 uniform vec3 u_place[CONES];         // places on the lamp, mm
 uniform float u_part;                // radius of a narrow cone: share of the disc's (POINTS 0), or mm
@@ -137,13 +137,13 @@ vec4 way_to_lamp(vec3 p) {
     return vec4(u_lamp.w > 0.0 ? axis / away : axis, away);
 }
 
-// Share of the light of all narrow cones that comes from a place, in cells, through what is farther than `begin` layers;
-// times what a lamp that shines to one side sends that way, which is all that `open` holds.
-float all_through(vec3 place, vec4 way, float begin, out float open) {
-    vec3 p = place * u_edge_mm;
+// Share of the light of all narrow cones that comes from a place, in cells, from `begin` to `stop` layers along an axis (each
+// cone's own if it is < 0); times what a lamp that shines to one side sends that way, which is all that `open` holds.
+float all_through(vec3 place, vec4 way, int axis, float begin, float stop, out float open) {
     float sum = 0.0;
-    open = 0.0;
 #if POINTS
+    vec3 p = place * u_edge_mm;
+    open = 0.0;
     for (int k = 0; k < CONES; ++k) {
         vec3 along = u_place[k] - p;
         float distance_mm = max(length(along), 1e-6 * u_cell_mm);
@@ -151,22 +151,20 @@ float all_through(vec3 place, vec4 way, float begin, out float open) {
         float weight = dot(u_shines, u_shines) > 0.0 ? max(dot(-along, u_shines), 0.0) : 1.0;
         if (weight <= 0.0) continue;
         open += weight / float(CONES);
-#if PART != 2
         // A rectangle seen from the side is narrow, and what lies behind it is not in the way.
         float tangent = u_tangent >= 0.0 ? u_tangent : u_part * max(weight, 0.1) / distance_mm;
-        sum += weight / float(CONES) * through(place, dominant(along), along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k], begin, 1e9);
-#endif
+        int its = axis < 0 ? dominant(along) : axis;
+        sum += weight / float(CONES) * through(place, its, along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k], begin, stop);
     }
 #else
     open = 1.0;
-#if PART != 2
     float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / way.w;
     mat2x3 sides = across(way.xyz);
     for (int k = 0; k < CONES; ++k) {
         vec3 along = normalize(way.xyz + sides * (u_disc[k] * tangent));
-        sum += through(place, dominant(along), along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], begin, 1e9) / float(CONES);
+        int its = axis < 0 ? dominant(along) : axis;
+        sum += through(place, its, along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], begin, stop) / float(CONES);
     }
-#endif
 #endif
     return sum;
 }
@@ -181,19 +179,13 @@ int second(vec3 steep, int first) {
 
 // Light that reaches a place, in cells, through what is near: up to a plane across an axis, u_split layers from the middle of its
 // 2^3 cells towards the lamp; and through what is far, from where its way meets that plane. `forward` tells the way's side.
-float past_plane(vec3 place, vec3 middle, vec4 way, int axis, float forward) {
+float past_plane(vec3 place, vec3 middle, vec4 way, int axis, float forward, out float open) {
     vec3 to_place = turned(place - middle, axis), slope = turned(way.xyz / u_edge_mm, axis);
     slope /= forward > 0.0 ? max(slope.x, 1e-3) : min(slope.x, -1e-3);
     float stop = float(u_split) - to_place.x * sign(forward);
     vec3 at_far = middle + turned_back(vec3(0.0, to_place.yz - slope.yz * to_place.x), axis);
-    float tangent = u_tangent >= 0.0 ? u_tangent : u_radius / way.w, near = 0.0;
-    mat2x3 sides = across(way.xyz);
     // All narrow cones: one wide one's boxes would be rounded alike in all cells, and light jump where they turn over.
-    for (int k = 0; k < CONES; ++k) {
-        vec3 along = normalize(way.xyz + sides * (u_disc[k] * tangent));
-        near += through(place, axis, along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], 0.5, stop) / float(CONES);
-    }
-    return near * textureLod(u_far, at_far / vec3(u_cells), 0.0).r;
+    return all_through(place, way, axis, 0.5, stop, open) * textureLod(u_far, at_far / vec3(u_cells), 0.0).r;
 }
 #endif
 
@@ -205,7 +197,7 @@ void main() {
     vec3 place = vec3(2 * cell + 1);
     vec4 matter = box_sum(max(2 * cell - u_around, 0), min(2 * cell + 2 + u_around, u_cells));
     if (matter.r + matter.g == 0.0) return;
-    float open, sum = all_through(place, way_to_lamp(place * u_edge_mm), float(u_split), open);
+    float open, sum = all_through(place, way_to_lamp(place * u_edge_mm), -1, float(u_split), 1e9, open);
     o_light = vec2(open > 0.0 ? sum / open : 1.0);
 #else
     o_light = vec2(0.0);
@@ -219,18 +211,19 @@ void main() {
     if (u_beam_edge.x < u_beam_edge.y) arriving *= smoothstep(u_beam_edge.x, u_beam_edge.y, dot(-way.xyz, u_beam));
 
     // 2. What is in the way, cone by cone.
-    float open, sum = all_through(place, way, 0.5, open);
 #if PART == 2
     // Far begins at a plane that is the same for all 2^3 cells.
     vec3 middle = 2.0 * floor(0.5 * vec3(cell)) + 1.0;
     vec3 main_way = way_to_lamp(middle * u_edge_mm).xyz, steep = abs(main_way / u_edge_mm);
     int axis = dominant(main_way), other = second(steep, axis);
-    float tie = steep[other] / steep[axis];
-    sum = past_plane(place, middle, way, axis, main_way[axis]);
+    float tie = steep[other] / steep[axis], open, sum = past_plane(place, middle, way, axis, main_way[axis], open);
     // Where two axes are about as steep both count, so that nothing jumps when a lamp goes from one to the other.
-    if (tie > ABOUT_AS_STEEP)
-        sum = mix(sum, past_plane(place, middle, way, other, main_way[other]), 0.5 * smoothstep(ABOUT_AS_STEEP, 1.0, tie));
-    sum *= open;
+    if (tie > ABOUT_AS_STEEP) {
+        float beside = past_plane(place, middle, way, other, main_way[other], open);
+        sum = mix(sum, beside, 0.5 * smoothstep(ABOUT_AS_STEEP, 1.0, tie));
+    }
+#else
+    float open, sum = all_through(place, way, -1, 0.5, 1e9, open);
 #endif
     o_light = openness * vec2(arriving * max(sum, u_unshadowed * open), 1.0);
 #endif
