@@ -8,6 +8,7 @@ import numpy as np
 from scipy import ndimage
 
 from sfumato import Scene, render
+from sfumato.colorimetry import LUMINANCE
 
 #: Allowed share of the picture's shorter side that the subject spans.
 SPAN = (0.60, 0.90)
@@ -18,7 +19,6 @@ CLIPPED = 0.01
 #: Least share of the foreground that shadow takes below `DARK` of its unlit brightness.
 SHADOWED = 0.05
 DARK = 0.7
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
 
 
 @dataclass(frozen=True)
@@ -91,8 +91,8 @@ def measure(lit: np.ndarray, unlit: np.ndarray, exposure: float = 0.0) -> Figure
     if not subject.any():
         return Figures(0.0, 0.0, 0.0, 0.0)
     straight = lit[subject, :3] / lit[subject, 3:] * np.float32(2.0**exposure)
-    level = straight @ _LUMINANCE
-    full = unlit[subject, :3] / np.maximum(unlit[subject, 3:], 1e-6) @ _LUMINANCE * np.float32(2.0**exposure)
+    level = straight @ LUMINANCE
+    full = unlit[subject, :3] / np.maximum(unlit[subject, 3:], 1e-6) @ LUMINANCE * np.float32(2.0**exposure)
     return Figures(
         span=_span(lit[..., 3] > 0.25),
         median=255 * float(srgb(np.median(level))),

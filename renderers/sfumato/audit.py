@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .colorimetry import LUMINANCE
 from .export.encode import srgb
 from .geometry import ColorBar
 from .geometry.color import color_table
@@ -24,7 +25,6 @@ MAP = "plasma_r"
 SHOWN = 0.05
 #: Hatching: width of a pair of stripes in pixels, and what the darker one keeps of its colour.
 PAIR, DARKER = 8, 0.55
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def visibility(lit: np.ndarray, unshadowed: np.ndarray) -> np.ndarray:
     lit, unshadowed : ndarray, shape (height, width, 4), float32
         The same picture with and without shadows: linear, premultiplied, without background.
     """
-    have, could = lit[..., :3] @ _LUMINANCE, unshadowed[..., :3] @ _LUMINANCE
+    have, could = lit[..., :3] @ LUMINANCE, unshadowed[..., :3] @ LUMINANCE
     shown = (unshadowed[..., 3] >= SHOWN) & (could > 0)
     return np.where(shown, have / np.where(shown, could, 1), 1.0)
 
@@ -81,7 +81,7 @@ def audited(lit: np.ndarray, unshadowed: np.ndarray, picture: np.ndarray, thresh
     dark = kept < threshold
     shown = int((unshadowed[..., 3] >= SHOWN).sum())
     result = picture.copy()
-    result[..., :3] = np.rint(picture[..., :3] @ _LUMINANCE).astype(np.uint8)[..., None]
+    result[..., :3] = np.rint(picture[..., :3] @ LUMINANCE).astype(np.uint8)[..., None]
     table = np.rint(255 * srgb(color_table(MAP))).astype(np.uint8)
     place = np.clip(kept[dark] / max(threshold, 1e-6), 0, 1) * (len(table) - 1)
     result[dark, :3] = table[place.astype(np.int32)] * _hatching(dark)[:, None]

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .colorimetry import LUMINANCE
+from .pieces import finished
 from .scene import Scene
 from .techniques.frame import Quality
 
@@ -32,7 +34,6 @@ STEP = 0.05
 SIZE, QUALITY = (96, 64), Quality(step=3.0, light=3.0)
 #: Opacity from which on a pixel counts as showing something.
 SHOWN = 0.05
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
 
 
 def exposure_for(lit: np.ndarray, unlit: np.ndarray) -> float:
@@ -46,7 +47,7 @@ def exposure_for(lit: np.ndarray, unlit: np.ndarray) -> float:
     shown = unlit[..., 3] >= SHOWN
     if not shown.any():
         return 0.0
-    have, own = (float(np.quantile(p[shown, :3] @ _LUMINANCE, BRIGHT)) for p in (lit, unlit))
+    have, own = (float(np.quantile(p[shown, :3] @ LUMINANCE, BRIGHT)) for p in (lit, unlit))
     if have <= 0 or own <= 0:
         return 0.0
     stops = max(-MOST, min(MOST, math.log2(own / have)))
@@ -92,12 +93,7 @@ def automatic_exposure(scene: Scene) -> float:
     """
     from .renderer import renderer_of_this_thread
 
-    pieces = measured_exposure(renderer_of_this_thread(), scene)
-    while True:
-        try:
-            next(pieces)
-        except StopIteration as end:
-            return float(end.value)
+    return finished(measured_exposure(renderer_of_this_thread(), scene))
 
 
 __all__ = ["automatic_exposure", "exposure_for", "measured_exposure"]

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from sfumato import TransferFunction
+from sfumato.colorimetry import cielab
 from sfumato.techniques.local_occlusion.directions import SETS, directions, nearest_count, preferred
-from sfumato.techniques.local_occlusion.levels import TEXELS, choose, cielab, errors, looks
+from sfumato.techniques.local_occlusion.levels import TEXELS, choose, errors, looks
 from sfumato.techniques.local_occlusion.packing import NONE, pack, packed_voxels
 from sfumato.techniques.local_occlusion.pyramid import EDGE, FINEST, LEVELS, build_pyramid
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from qtpy.QtGui import QColor, QImage, QPainter
 
+from sfumato.colorimetry import cielab
 from sfumato.export.encode import srgb
 from sfumato.geometry import ColorBar
 from sfumato.geometry.color import color_table, linear
@@ -17,10 +18,6 @@ MAP = "viridis"
 #: Upper ends of the scale: the least that holds all but a thousandth of the pixels is taken.
 ENDS = (5.0, 10.0, 20.0, 50.0, 100.0)
 _LINEAR = linear(np.arange(256) / 255).astype(np.float32)
-#: Linear sRGB to XYZ over the white of D65 (IEC 61966-2-1).
-_XYZ = np.array(
-    [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], dtype=np.float32
-) / np.array([[0.9505], [1.0], [1.089]], dtype=np.float32)
 
 
 def seen(image: QImage) -> np.ndarray:
@@ -34,17 +31,9 @@ def seen(image: QImage) -> np.ndarray:
     return flat[:, : 3 * ground.width()].reshape(ground.height(), ground.width(), 3).copy()
 
 
-def lab(pixels: np.ndarray) -> np.ndarray:
-    """Return sRGB (…, 3), uint8, as CIE L*a*b* under D65, float32."""
-    xyz = _LINEAR[pixels] @ _XYZ.T
-    f = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz * (29 / 6) ** 2 / 3 + 4 / 29)
-    x, y, z = np.moveaxis(f, -1, 0)
-    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
-
-
 def color_difference(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the CIE 1976 difference (about 2 is just seen) of sRGB pictures of one size, shape (height, width)."""
-    return np.asarray(np.linalg.norm(lab(one) - lab(other), axis=-1))
+    return np.asarray(np.linalg.norm(cielab(_LINEAR[one]) - cielab(_LINEAR[other]), axis=-1))
 
 
 def difference_picture(one: QImage, other: QImage) -> tuple[QImage, ColorBar, float]:

@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 
 import sfumato
+from sfumato.colorimetry import cielab
 from sfumato.renderer import FULL
 from sfumato.techniques.frame import Frame
 from sfumato.techniques.local_occlusion.blocks import prepare_blocks
 from sfumato.techniques.local_occlusion.gather import Gatherer
-from sfumato.techniques.local_occlusion.levels import cielab
 from sfumato.techniques.local_occlusion.params import LocalOcclusionParams
 from sfumato.techniques.marcher import prepare_material
 

@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from sfumato import Scene, SfumatoError, Volume, render
-from sfumato.techniques.local_occlusion.levels import cielab
+from sfumato.colorimetry import cielab
 
 from .explicit import draw_explicit
 from .figure import Cuts, Difference, Explicit, Figure, Panel

@@ -6,10 +6,10 @@ import threading
 from collections import OrderedDict
 from collections.abc import Callable, Generator
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
+from ..pieces import finished, spanned
 from ..scene.geometry import Geometry, value_range
 from ..scene.shapes import Mesh, Surface
 from .color import point_colors
@@ -25,7 +25,6 @@ CACHE_BYTES = 1 << 30
 _CHUNK_POINTS = 100_000
 
 Progress = Callable[[float, str], object]
-Result = TypeVar("Result")
 
 _cache: OrderedDict[str, Mesh] = OrderedDict()
 _lock = threading.Lock()
@@ -52,15 +51,8 @@ def mesh_of(geometry: Geometry, progress: Progress | None = None) -> Mesh:
     known = known_mesh(geometry)
     if known is not None:
         return known
-    work = build(geometry)
-    while True:
-        try:
-            done = next(work)
-        except StopIteration as stop:
-            mesh: Mesh = stop.value
-            return mesh
-        if progress is not None:
-            progress(done, "Building tubes")
+    tell = None if progress is None else lambda done: progress(done, "Building tubes")
+    return finished(build(geometry), tell)
 
 
 def known_mesh(geometry: Geometry) -> Mesh | None:
@@ -113,25 +105,14 @@ def _tube_mesh(geometry: Geometry) -> Generator[float, None, Mesh]:
             parts.append(thinned_out(run, TOLERANCE * geometry.radius))
         yield 0.05 + 0.25 * (i + 1) / len(pieces)
     if not geometry.sides:
-        parts = yield from _span(fitted(parts, geometry.radius, BUDGET_TRIANGLES), 0.3, 0.6)
+        parts = yield from spanned(fitted(parts, geometry.radius, BUDGET_TRIANGLES), 0.3, 0.6)
     sides = geometry.sides or automatic_sides(parts, BUDGET_TRIANGLES)
-    mesh = yield from _span(_swept(geometry, parts, names, max(sides, 3)), 0.6, 0.9)
+    mesh = yield from spanned(_swept(geometry, parts, names, max(sides, 3)), 0.6, 0.9)
     if len(mesh.triangles) <= 2 * MOVING_TRIANGLES:
         return mesh
-    rough = yield from _span(fitted(parts, geometry.radius, MOVING_TRIANGLES), 0.9, 0.97)
-    coarse = yield from _span(_swept(geometry, rough, names, FEWEST_SIDES), 0.97, 1.0)
+    rough = yield from spanned(fitted(parts, geometry.radius, MOVING_TRIANGLES), 0.9, 0.97)
+    coarse = yield from spanned(_swept(geometry, rough, names, FEWEST_SIDES), 0.97, 1.0)
     return replace(mesh, coarse=coarse)
-
-
-def _span(work: Generator[float, None, Result], low: float, high: float) -> Generator[float, None, Result]:
-    """Let a part's progress run from one share of the whole to another."""
-    while True:
-        try:
-            done = next(work)
-        except StopIteration as stop:
-            result: Result = stop.value
-            return result
-        yield low + (high - low) * done
 
 
 def _swept(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...colorimetry import cielab
 from ...scene import TransferFunction
 from .pyramid import FINEST, LEVELS, Pyramid
 
@@ -18,17 +19,6 @@ ENTRIES = 4096
 CHUNK = 2048
 #: Texels of a block at each level.
 TEXELS = 8 ** np.arange(LEVELS)
-#: Linear sRGB to CIE XYZ relative to its white (D65); rows X, Y, Z.
-_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
-_XYZ /= _XYZ.sum(axis=1, keepdims=True)
-
-
-def cielab(linear: np.ndarray) -> np.ndarray:
-    """Return L*, a*, b* of linear sRGB, shape (..., 3)."""
-    xyz = np.clip(linear, 0, None) @ _XYZ.T
-    f = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz / (3 * (6 / 29) ** 2) + 4 / 29)
-    x, y, z = np.moveaxis(f, -1, 0)
-    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
 
 
 def looks(transfer: TransferFunction, domain: tuple[float, float]) -> np.ndarray:

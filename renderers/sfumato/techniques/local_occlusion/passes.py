@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Generator, Iterator
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 
 from ...gpu import Device, Program
+from ...pieces import spanned
 from ..frame import Frame
 from ..lamp_shadows import Lamps, LampShadows
 from ..marcher import (
@@ -103,7 +103,12 @@ class LocalOcclusionPainter:
         if params.lamps == "diffuse":
             variant = replace(variant, lights=active)
         elif params.lamps == "shadows" and active:
-            lamps = yield from later(self.shadows.prepare(frame, material), RESOLVED, SWEPT)
+            lamps = yield from spanned(
+                # A sweep by itself is the first half of a frame.
+                self.shadows.prepare(frame, material),
+                RESOLVED,
+                2 * SWEPT - RESOLVED,
+            )
             variant = replace(
                 variant, slices=True, shading=VOLUMES, lights=active, near=lamps.ways.samples, adaptive=False
             )
@@ -140,16 +145,6 @@ class LocalOcclusionPainter:
         self.resolver.release()
         self.shadows.release()
         self.swept.release()
-
-
-def later(work: Generator[float, None, Lamps], start: float, end: float) -> Generator[float, None, Lamps]:
-    """Do a sweep of lamps, whose progress ends at 0.5, as the part of a frame from start to end."""
-    while True:
-        try:
-            done = next(work)
-        except StopIteration as stop:
-            return cast(Lamps, stop.value)
-        yield start + (end - start) * min(2 * done, 1.0)
 
 
 def combination(frame: Frame) -> int:
