@@ -10,6 +10,7 @@ import numpy as np
 
 from ..geometry.color_bar import ColorBar, color_bars
 from ..scene import Scene
+from .ink import draw_over
 from .scale_bar import LETTERS, POINTS
 
 _LEAST_LETTERS = 9.0
@@ -55,19 +56,8 @@ class BarsInk:
         rows : ndarray, shape (n, width, 4), uint8 or uint16
             sRGB, straight alpha; changed in place.
         """
-        left, first = self.place
-        begin, end = max(first, top), min(first + len(self.pixels), top + len(rows))
-        if begin >= end:
-            return
-        over = self.pixels[begin - first : end - first]
-        part = rows[begin - top : end - top, left : left + over.shape[1]]
-        full = float(np.iinfo(rows.dtype).max)
-        cover = over[..., 3:]
-        below = part[..., 3:] / full * (1 - cover)
-        alpha = cover + below
-        color = (cover * over[..., :3] * full + below * part[..., :3]) / np.maximum(alpha, 1e-6)
-        part[..., :3] = np.rint(np.clip(color, 0, full))
-        part[..., 3:] = np.rint(alpha * full)
+        cover = self.pixels[..., 3:]
+        draw_over(rows, top, self.place, cover * self.pixels[..., :3], cover)
 
 
 def _beside(pictures: Sequence[np.ndarray], gap: int) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..scene import Camera
+from .ink import draw_over
 
 #: Share of the picture's width that the bar fills at most.
 SHARE = 0.25
@@ -77,19 +78,8 @@ class ScaleBar:
         rows : ndarray, shape (n, width, 4), uint8 or uint16
             sRGB, straight alpha; changed in place.
         """
-        left, first = self.place
-        begin, end = max(first, top), min(first + len(self.ink), top + len(rows))
-        if begin >= end:
-            return
-        ink = self.ink[begin - first : end - first]
-        part = rows[begin - top : end - top, left : left + ink.shape[1]]
-        full = float(np.iinfo(rows.dtype).max)
-        white, cover = ink[..., :1], np.maximum(ink[..., :1], ink[..., 1:])
-        below = part[..., 3:] / full * (1 - cover)
-        alpha = cover + below
-        colour = (white * full + below * part[..., :3]) / np.maximum(alpha, 1e-6)
-        part[..., :3] = np.rint(np.clip(colour, 0, full))
-        part[..., 3:] = np.rint(alpha * full)
+        white, rim = self.ink[..., :1], self.ink[..., 1:]
+        draw_over(rows, top, self.place, white, np.maximum(white, rim))
 
 
 def round_length(most: float) -> float:
