@@ -24,6 +24,8 @@ from sfumato_ui.tools.view import PictureView
 from sfumato_ui.vtk_view.link import camera_of
 from sfumato_ui.window import MainWindow
 
+from .link_walk import places_in_vtk
+
 LEFT = Qt.MouseButton.LeftButton
 
 
@@ -69,18 +71,9 @@ def vtk_pixels(window: MainWindow) -> np.ndarray:
     return flat[:, : 4 * image.width()].reshape(image.height(), image.width(), 4).astype(int)
 
 
-def places_in_vtk(stage: Any, points: np.ndarray) -> np.ndarray:
-    """Where VTK projects world points: pixels from the upper left corner."""
-    from vtkmodules.vtkRenderingCore import vtkCoordinate
-
-    found = []
-    for point in points:
-        spot = vtkCoordinate()
-        spot.SetCoordinateSystemToWorld()
-        spot.SetValue(*map(float, point))
-        x, y = spot.GetComputedDoubleDisplayValue(stage.view.renderer)
-        found.append((x, stage.view.render_window.GetSize()[1] - y))
-    return np.array(found) / stage.view.devicePixelRatioF()
+def places_in_window(stage: Any, points: np.ndarray) -> np.ndarray:
+    """Where VTK projects world points: the window's pixels from the upper left corner."""
+    return np.asarray(places_in_vtk(stage, points) / stage.view.devicePixelRatioF())
 
 
 # -- both views ------------------------------------------------------------------------------------
@@ -134,7 +127,7 @@ def test_a_point_lies_in_the_same_place_in_both(
     qtbot.wait(60)
     points = np.random.default_rng(0).uniform(0, 40, (20, 3))
     ours = PictureView(camera, stage.view.width(), stage.view.height()).places(points)
-    assert np.abs(places_in_vtk(stage, points) - ours).max() < 1
+    assert np.abs(places_in_window(stage, points) - ours).max() < 1
 
 
 @pytest.mark.parametrize(
@@ -179,7 +172,7 @@ def test_moves_in_the_vtk_view_move_the_lit_view(both: MainWindow, hand: Any, qt
 # -- picking and regions ---------------------------------------------------------------------------
 def click_at(window: MainWindow, qtbot: Any, point: tuple[float, float, float]) -> None:
     stage = wait_for_stage(window, qtbot)
-    x, y = places_in_vtk(stage, np.array([point]))[0]
+    x, y = places_in_window(stage, np.array([point]))[0]
     qtbot.mouseClick(stage.view, LEFT, Qt.KeyboardModifier.NoModifier, QPointF(x, y).toPoint())
 
 
@@ -221,9 +214,9 @@ def test_what_is_picked_is_what_lies_under_the_pointer(both: MainWindow, qtbot: 
     stage.picked.connect(picks.append)
     stage.clicked.connect(points.append)
     for point in ([12, 20, 20], [12, 19, 20 + 4 * mm], [12, 30, 14]):
-        at = places_in_vtk(stage, np.array([point], float))[0]
+        at = places_in_window(stage, np.array([point], float))[0]
         stage.pick(QPointF(*at))
-        assert np.abs(places_in_vtk(stage, np.array(points[-1:]))[0] - at).max() < 0.1
+        assert np.abs(places_in_window(stage, np.array(points[-1:]))[0] - at).max() < 0.1
     assert [p and p.line for p in picks] == [1, 0, None]
     assert points[2][1] == pytest.approx(25, abs=0.01), "on the surface"
     both.editor.change("One", geometry=(lines,))
@@ -252,7 +245,7 @@ def test_a_box_chooses_lines(both: MainWindow, hand: Any, qtbot: Any) -> None:
     camera = Camera(position=(110, -70, 60), focal_point=(20, 20, 20), view_up=(0, 0, 1))
     both.editor.change("Look", camera=camera)
     qtbot.wait(60)
-    x, y = places_in_vtk(panel.stage, np.array([before]))[0]
+    x, y = places_in_window(panel.stage, np.array([before]))[0]
     place = QPointF(x, y).toPoint()
     hand.drag(panel.stage.view, place, place + QPoint(0, -60))
     (roi,) = both.editor.scene.geometry[0].rois
@@ -315,14 +308,14 @@ def test_single_seeds_and_seeds_on_a_surface(make_window: Any, flow: str, tmp_pa
     assert window.editor.scene.geometry[0].shape.bounds[:, 1] == pytest.approx((14, 26), abs=0.5)
     wait_for_stage(window, qtbot)  # the lines that were there before lie in front of the ball
     choose(panel, "points")
-    x, y = places_in_vtk(stage, np.array([[20, 20, 20]]))[0]
+    x, y = places_in_window(stage, np.array([[20, 20, 20]]))[0]
     on_ball = QPointF(x, y).toPoint()
     for place in (on_ball, on_ball + QPoint(90, 80)):
         qtbot.mouseClick(stage.view, LEFT, Qt.KeyboardModifier.NoModifier, place)
     qtbot.waitUntil(lambda: len(seeds().places) == 2, timeout=60_000)
     first = np.array(seeds().places[0])
     assert np.linalg.norm(first - 20) < 10, "on the ball, or on a line before it"
-    seen = places_in_vtk(stage, first[None])[0]
+    seen = places_in_window(stage, first[None])[0]
     assert np.abs(seen - (on_ball.x(), on_ball.y())).max() < 1, "where the click was"
 
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -87,6 +88,33 @@ def has_display() -> bool:
     )
 
 
+@contextmanager
+def bench_window(what: str, flag: str) -> Iterator[Any]:
+    """Make a window with settings of its own for a benchmark, and close it.
+
+    Raises
+    ------
+    SfumatoError
+        If there is no display or Qt is missing.
+    """
+    if not has_display():
+        raise SfumatoError(f"{what} needs a display (with none: xvfb-run sfumato bench {flag})")
+    try:
+        from sfumato_app.first_minute import own_settings
+        from sfumato_ui.app import make_application
+        from sfumato_ui.window import MainWindow
+    except ImportError as error:
+        raise SfumatoError(f"{what} needs the window: {error}") from None
+    make_application()
+    with own_settings():
+        window = MainWindow()
+        try:
+            yield window
+        finally:
+            window.editor.document.mark_saved()
+            window.close()
+
+
 def measure_drag(
     setting: Setting,
     technique: str,
@@ -101,22 +129,8 @@ def measure_drag(
     SfumatoError
         If there is no display, Qt is missing, or no picture comes.
     """
-    if not has_display():
-        raise SfumatoError("a drag needs a display (with none: xvfb-run sfumato bench --drag)")
-    try:
-        from sfumato_app.first_minute import own_settings
-        from sfumato_ui.app import make_application
-        from sfumato_ui.window import MainWindow
-    except ImportError as error:
-        raise SfumatoError(f"a drag needs the window: {error}") from None
-    make_application()
-    with own_settings():
-        window = MainWindow()
-        try:
-            return _drag(window, setting, technique, steps, first, tell)
-        finally:
-            window.editor.document.mark_saved()
-            window.close()
+    with bench_window("a drag", "--drag") as window:
+        return _drag(window, setting, technique, steps, first, tell)
 
 
 def _drag(

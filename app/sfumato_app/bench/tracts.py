@@ -16,10 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from sfumato import SfumatoError
-
 from . import machine
-from .drag import SIZE, _run_until, has_display
+from .drag import SIZE, _run_until, bench_window
 
 LINES = 36_000
 #: Points of a line, and the millimetres between them: those of a tracked fibre.
@@ -105,20 +103,10 @@ def measure_tracts(lines: int = LINES, tell: Callable[[str], None] = lambda text
     SfumatoError
         If there is no display, Qt is missing, or no picture comes.
     """
-    if not has_display():
-        raise SfumatoError("this needs a display (with none: xvfb-run sfumato bench --tracts)")
-    try:
-        from sfumato_app.first_minute import own_settings
-        from sfumato_ui.app import make_application
-        from sfumato_ui.window import MainWindow
-    except ImportError as error:
-        raise SfumatoError(f"this needs the window: {error}") from None
-    make_application()
-    with own_settings(), tempfile.TemporaryDirectory() as folder:
+    with bench_window("this", "--tracts") as window, tempfile.TemporaryDirectory() as folder:
         tell("writing")
         path = Path(folder) / "tracts.trk"
         points = write_tracts(path, lines)
-        window = MainWindow()
         try:
             window.resize(*SIZE)
             window.show()
@@ -126,8 +114,6 @@ def measure_tracts(lines: int = LINES, tell: Callable[[str], None] = lambda text
             return _open(window, path, lines, points)
         finally:
             tell("")
-            window.editor.document.mark_saved()
-            window.close()
 
 
 def _open(window: Any, path: Path, lines: int, points: int) -> Tracts:

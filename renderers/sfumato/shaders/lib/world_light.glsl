@@ -59,6 +59,4 @@ vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) {
 #endif
     return alpha * (color * sum + shine);
 }
-#else
-vec3 world_lit(vec3 color, float alpha, vec3 t, vec3 p_world, vec3 view) { return alpha * color * world_light(t); }
 #endif
