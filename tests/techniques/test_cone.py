@@ -13,6 +13,7 @@ from scipy import ndimage
 import sfumato
 from sfumato import Camera, ClipPlane, Light, Renderer, Scene, TransferFunction, Volume
 from sfumato.reference import cone as traced
+from sfumato.techniques import marcher
 from sfumato.techniques.frame import DRAG, FULL
 from sfumato.techniques.light_cache import BYTES_PER_TEXEL, LightCache
 from sfumato.techniques.light_volume import DIRECTIONS, LightSweeper, directions_of_cone
@@ -263,3 +264,18 @@ def test_no_lamp_leaves_the_subject_dark(still: Callable[..., Scene]) -> None:
     dark = still("cone").with_(**{"lights.0.enabled": False})
     shown = sfumato.render(dark, (24, 24), linear=True)
     assert shown[..., :3].max() == 0
+
+
+@pytest.mark.parametrize("technique", ["cone", "multidirectional"])
+@pytest.mark.parametrize("tilt", [35.0, 150.0])
+def test_what_is_thin_is_shaded_together_and_looks_the_same(
+    monkeypatch: pytest.MonkeyPatch, technique: str, tilt: float
+) -> None:
+    fog = TransferFunction.from_points([(0.0, (1, 1, 1), 0.01), (0.5, (1, 1, 1), 0.03), (1, (1, 1, 1), 0.999)], 1.0)
+    scene = stage(Light(tilt=tilt, aperture=15, rotation=140), technique=technique, transfer=fog)
+    together = linear(scene)
+    monkeypatch.setattr(marcher, "TOGETHER_VOXELS", 0.0)
+    apart = linear(scene)
+    difference = np.abs(together - apart)
+    assert 0 < difference.mean() < 1 / 255
+    assert difference.max() < 5 / 255

@@ -24,6 +24,7 @@ uniform sampler2D u_previous;    // colour and opacity so far
 uniform bool u_start;            // there is nothing so far
 uniform float u_z0;              // depth of plane 0 in mm (slices), or the samples' offset in steps, in (-1, 0] (rays)
 uniform float u_step;            // sampling distance in mm
+uniform float u_together;        // longest way that is shaded together, mm of depth
 uniform int u_first, u_last;     // segments of this pass
 uniform float u_near;            // mm
 uniform float u_far;             // mm
@@ -62,6 +63,14 @@ layout(location = 0) out vec4 o_color;
 const float OPAQUE = 0.999;
 // Whether shading costs so much more than looking that it pays to wait until all neighbours have something to shade.
 const bool LOOK_ON = SHADING > 0 && SHADING < 6;
+// Share of the picture up to which segments are shaded together; the published forms shade each.
+#if LITERAL
+const float THIN = 0.0;
+#else
+const float THIN = 0.05;
+#endif
+// Share of the picture up to which one look tells what stands close by.
+const float FAINT = 0.03;
 
 // What the volume's texture holds at a place: its value, and the light there if it lies beside it.
 struct Reading { float value; vec3 light; };
@@ -95,21 +104,25 @@ vec3 phong(vec3 gradient, vec3 view, vec3 color, float alpha) {
 #endif
 
 #if SHADING == 1 || SHADING == 3
-// Colour that a slab of the occlusion methods sends to the eye.
-vec3 lit(int i, Meeting front, Meeting back, vec3 color, float alpha, float depth, float secant, vec3 t, vec3 view) {
-    vec3 result = vec3(0.0);
+// Light that comes back from slabs of such a depth each that are opaque by alpha together, per light.
+vec4 returned_light(float depth, float secant, float alpha) {
 #if LITERAL
-    vec4 returned = vec4(alpha);
+    return vec4(alpha);
 #else
-    vec4 returned = slab_term(depth, secant);
+    return slab_term(depth, secant) * (alpha / max(1.0 - exp(-depth * secant), 1e-20));
 #endif
+}
+
+// Colour that a slab of the occlusion methods sends to the eye.
+vec3 lit(int i, Meeting front, Meeting back, bool faint, vec3 color, float alpha, vec4 returned, vec3 t, vec3 view) {
+    vec3 result = vec3(0.0);
 #if SPECULAR
     vec3 gradient = volume_gradient(t);
     float strength = length(gradient);
     if (dot(gradient, view) < 0.0) gradient = -gradient;
 #endif
     float visible[4];
-    visibilities(i, front, back, visible);
+    visibilities(i, front, back, faint, visible);
     for (int l = 0; l < LIGHTS; ++l) {
         visible[l] = max(visible[l], u_unshadowed);
         // Ambient is what no shadow takes away, not even a sample's own; a fully lit surface stays as bright as it is.
@@ -174,60 +187,83 @@ void main() {
         int most = samples_as_one(a + b * (0.5 * (z + leave)));
 #endif
         while (sum.a < OPAQUE && i < u_last && z < leave) {
-            int taken = 1;
-            float z_next = z, magnitude = 0.0;
+            float left = 1.0 - sum.a;
+            int taken = 1, j = i;
+            float z_end = z, magnitude = 0.0, lean = 0.0;
             Reading next = here;
-            vec4 mean = vec4(0.0);
-            // 3. On to the next segment in which something is visible.
-            for (; i < u_last && z < leave; i += taken) {
+            vec4 through = vec4(0.0);       // optical depth along the axis (a) and colour times it, from z to z_end
+            vec3 glow = vec3(0.0);
+            // 3. On to the next segment in which something is visible. What is thin is shaded together: light changes
+            // little in so short a way, and to ask for it is what costs most.
+            while (j < u_last && z_end < leave) {
 #if ADAPTIVE
-                taken = clamp(int(ceil((leave - z) / dz)), 1, most);
+                taken = clamp(int(ceil((leave - z_end) / dz)), 1, most);
 #endif
-                z_next = min(z0 + float(i + taken) * dz, range.y);
-                next = reading_at(a + b * z_next);
+                float z_next = min(z0 + float(j + taken) * dz, range.y);
+                Reading there = reading_at(a + b * z_next);
 #ifdef TRANSFER_2D
-                magnitude = length(volume_gradient(a + b * (0.5 * (z + z_next))));
+                magnitude = length(volume_gradient(a + b * (0.5 * (z_end + z_next))));
 #endif
-                mean = classify(here.value, next.value, magnitude);
-                if (!LOOK_ON || mean.a > 0.0) break;
-                z = z_next;
-                here = next;
+                float way = max(z_next - z_end, 0.0);
+                vec4 part = way * classify(next.value, there.value, magnitude);
+                if (LOOK_ON && through.a > 0.0 && (left * (through.a + part.a) > THIN || z_next - z > u_together)) break;
+                through += part;
+                lean += part.a * float(j - i);
+#if EMISSION
+                glow += way * classify_emission(next.value, there.value, magnitude);
+#endif
+                z_end = z_next;
+                next = there;
+                j += taken;
+                if (!LOOK_ON || left * through.a > THIN) break;
+                if (through.a <= 0.0) {
+                    z = z_end;
+                    here = next;
+                    i = j;
+                }
             }
-            if (LOOK_ON && mean.a <= 0.0) break;
+            if (LOOK_ON && through.a <= 0.0) break;
 
             // 4. Shade it.
-            float depth = mean.a * max(z_next - z, 0.0);        // optical depth along the axis
+            float depth = through.a;
             float alpha = 1.0 - exp(-depth * secant);
-            vec3 color = mean.rgb / max(mean.a, 1e-20);
+            vec3 color = through.rgb / max(depth, 1e-20);
 #if SHADING == 1 || SHADING == 3
-            float z_front = z0 + float(i) * dz, z_back = z_front + dz;
-            Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, here.value);
-            Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, next.value);
-            vec3 c = lit(i, front, back, color, alpha, depth, secant, a + b * (0.5 * (z + z_next)), view);
+            // Segments that are shaded together get the light of their middle one, as much as they count.
+            float number = float(j - i), middle = lean / max(depth, 1e-20);
+#if SHADING == 1
+            middle = floor(middle + 0.5);   // light is known slab by slab
+#endif
+            float z_front = z0 + (float(i) + middle) * dz, z_back = z_front + dz;
+            vec2 values = mix(vec2(here.value), vec2(next.value), vec2(middle, middle + 1.0) / number);
+            Meeting front = Meeting(ray.lateral0 + ray.lateral1 * z_front, a + b * z_front, values.x);
+            Meeting back = Meeting(ray.lateral0 + ray.lateral1 * z_back, a + b * z_back, values.y);
+            vec4 returned = returned_light(depth / number, secant, alpha);
+            vec3 c = lit(i + int(middle), front, back, left * depth <= FAINT, color, alpha, returned, a + b * (0.5 * (z + z_end)), view);
 #elif SHADING == 4
-            float z_mid = 0.5 * (z + z_next);
+            float z_mid = 0.5 * (z + z_end);
 #if FACING || SPECULAR
             vec3 c = world_lit(color, alpha, a + b * z_mid, ray.origin + ray.direction * z_mid, view);
 #else
             // At both ends, as light that lies beside the values is read: both look the same.
-            vec3 c = alpha * color * (0.5 * (world_light(a + b * z) + world_light(a + b * z_next)));
+            vec3 c = alpha * color * (0.5 * (world_light(a + b * z) + world_light(a + b * z_end)));
 #endif
 #elif SHADING == 5
-            vec3 c = local_lit(color, alpha, a + b * (0.5 * (z + z_next)), view);
+            vec3 c = local_lit(color, alpha, a + b * (0.5 * (z + z_end)), view);
 #elif SHADING == 2
-            vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_next))), view, color, 1.0);
+            vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_end))), view, color, 1.0);
 #elif SHADING == 6
             vec3 c = alpha * color * (0.5 * u_light_scale * (here.light + next.light));
 #else
             vec3 c = alpha * color;
 #endif
 #if EMISSION
-            c += alpha * classify_emission(here.value, next.value, magnitude) / max(mean.a, 1e-20);
+            c += alpha * glow / max(depth, 1e-20);
 #endif
             sum += (1.0 - sum.a) * vec4(c, alpha);
-            z = z_next;
+            z = z_end;
             here = next;
-            i += taken;
+            i = j;
         }
     }
     if (sum.a >= OPAQUE) sum /= sum.a;

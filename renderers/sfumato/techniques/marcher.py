@@ -29,6 +29,8 @@ PIECE_SECONDS = 0.04
 PIECE_PIXELS = 512 * 64
 #: Gradient, in value range per voxel, at which a highlight has half its strength.
 EDGE = 0.05
+#: Thin segments are shaded together: so many at most, and no farther than so many voxels at full quality.
+TOGETHER, TOGETHER_VOXELS = 4, 2.0
 _FAR = 1e30
 
 
@@ -266,11 +268,17 @@ def set_view(program: Program, frame: Frame, stack: Stack | None) -> None:
         u_half=camera.half_extent(width / height), u_center=camera.window_center, u_parallel=camera.parallel_projection,
         u_size=(float(width), float(height)), u_pixel_jitter=frame.pixel_jitter,
         u_corner=tuple(map(float, frame.corner)),
-        u_step=frame.step, u_z0=stack.z0 if stack else frame.jitter - 1,
+        u_step=frame.step, u_together=together(frame), u_z0=stack.z0 if stack else frame.jitter - 1,
         u_near=near_depth(frame), u_far=_FAR,
         u_edge=EDGE / frame.volume.min_spacing,
         u_unshadowed=float(frame.unshadowed),
     )  # fmt: skip
+
+
+def together(frame: Frame) -> float:
+    """Return the longest way, in mm of depth, that is shaded as one where it is thin."""
+    longest = TOGETHER_VOXELS * frame.quality.light * frame.volume.min_spacing
+    return min(TOGETHER * frame.step, longest) * (1 + 1e-6)
 
 
 def near_depth(frame: Frame) -> float:

@@ -10,12 +10,12 @@ uniform vec3 u_to_light[4];              // from a point to where its light is a
 uniform float u_near_length[4];          // mm of optical path that this way counts as
 uniform float u_near_end[4 * NEAR];      // shares of this way at which the ray caster looks, lamp by lamp, the last is 1
 
-// Light that what stands between t, where the volume has this value, and the place where the lamp's texture is asked lets through.
-float near_field(int l, vec3 t, float value) {
+// Light that what stands between t, where the volume has this value, and the place where the lamp's texture is asked lets through; by one look if it is faint.
+float near_field(int l, vec3 t, float value, bool faint) {
     vec3 along = u_to_light[l];
     vec2 kept = kept_range(t, along, vec2(0.0, 1.0));
     float depth = 0.0, begin = 0.0;
-    for (int k = 0; k < NEAR; ++k) {
+    for (int k = faint ? NEAR - 1 : 0; k < NEAR; ++k) {
         float end = u_near_end[l * NEAR + k], next = volume_value(t + along * end);
         depth += classify_extinction(value, next) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
         value = next;
@@ -65,10 +65,10 @@ vec3 asked_at(int l, vec3 t) { return (u_light_from_texture[l] * vec4(t + u_to_l
 vec3 place_in(int l, vec3 t) { return (u_light_from_texture[l] * vec4(t, 1.0)).xyz; }
 
 #ifndef SURFACES
-// Visibility of all lights at slab i, for what a view ray meets at its two planes.
-void visibilities(int i, Meeting front, Meeting back, out float visible[4]) {
+// Visibility of all lights at slab i, for what a view ray meets at its two planes; what is faint needs no close look.
+void visibilities(int i, Meeting front, Meeting back, bool faint, out float visible[4]) {
     #define LIGHT_IN(l) (u_rear[l] == 1 ? back.t : front.t)
-    #define SEEN(l) visible[l] = near_field(l, LIGHT_IN(l), u_rear[l] == 1 ? back.value : front.value) * light_at(u_light##l, asked_at(l, LIGHT_IN(l))) * NEAR_COVER(l, place_in(l, LIGHT_IN(l)));
+    #define SEEN(l) visible[l] = near_field(l, LIGHT_IN(l), u_rear[l] == 1 ? back.value : front.value, faint) * light_at(u_light##l, asked_at(l, LIGHT_IN(l))) * NEAR_COVER(l, place_in(l, LIGHT_IN(l)));
 #if LIGHTS > 0
     SEEN(0)
 #endif

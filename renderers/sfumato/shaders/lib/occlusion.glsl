@@ -17,14 +17,15 @@ uniform vec2 u_lattice_size;         // texels
 float layer_of(int l, int i) { return float(l * u_layers_per_light + i - (i / u_layers_per_light) * u_layers_per_light); }
 
 #if NEAR > 0
-// Light that what stands within NEAR slabs of t, a point where the volume has this value, lets through to it.
-float near_field(int l, vec3 t, float value) {
+// Light that what stands within NEAR slabs of t, a point where the volume has this value, lets through to it; by one look if it is faint.
+float near_field(int l, vec3 t, float value, bool faint) {
     vec3 along = u_to_light[l];
     vec2 kept = kept_range(t, along, vec2(0.0, float(NEAR)));
     float depth = 0.0;
-    for (int k = 0; k < NEAR; ++k) {
-        float next = volume_value(t + along * float(k + 1));
-        depth += classify_extinction(value, next) * max(min(kept.y, float(k + 1)) - max(kept.x, float(k)), 0.0);
+    int stride = faint ? NEAR : 1;
+    for (int k = 0; k < NEAR; k += stride) {
+        float begin = float(k), end = float(k + stride), next = volume_value(t + along * end);
+        depth += classify_extinction(value, next) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
         value = next;
     }
     return exp(-depth * u_step * u_path[l]);
@@ -93,26 +94,26 @@ int asked_slab(int l, int i) {
 }
 
 // Visibility of light l at slab i. `texel` and t are the sample's place on the plane where the light enters the slab.
-float visibility(int l, int i, vec2 texel, vec3 t, float value) {
+float visibility(int l, int i, vec2 texel, vec3 t, float value, bool faint) {
     float near = 1.0;
     int at = asked_slab(l, i);
 #if NEAR > 0
     // The lattice is as coarse as the voxels: what is close is looked for on the pixel's own way to the light, and the
     // lattice is asked a little nearer to the light, where its columns have not yet entered the surface themselves.
-    near = near_field(l, t, value);
+    near = near_field(l, t, value, faint);
     // A column keeps its number from plane to plane, but not its texel.
     texel += vec2(((u_shear[l] * (i + u_rear[l])) >> 15) - ((u_shear[l] * (at + u_rear[l])) >> 15));
 #endif
     return near * textureLod(u_layers, vec3(texel / u_lattice_size, layer_of(l, at)), 0.0).r;
 }
 
-// Visibility of all lights at slab i, for what a view ray meets at its two planes.
-void visibilities(int i, Meeting front, Meeting back, out float visible[4]) {
+// Visibility of all lights at slab i, for what a view ray meets at its two planes; what is faint needs no close look.
+void visibilities(int i, Meeting front, Meeting back, bool faint, out float visible[4]) {
     vec2 texels[4];
     for (int l = 0; l < LIGHTS; ++l) {
         bool rear = u_rear[l] == 1;
         texels[l] = texel_of(l, i, rear ? back.lateral : front.lateral);
-        visible[l] = visibility(l, i, texels[l], rear ? back.t : front.t, rear ? back.value : front.value);
+        visible[l] = visibility(l, i, texels[l], rear ? back.t : front.t, rear ? back.value : front.value, faint);
     }
     #define COVERED(l) visible[l] *= NEAR_COVER(l, i, asked_slab(l, i), texels[l]);
 #if GEOMETRY

@@ -52,13 +52,13 @@ float partial(int l, sampler3D light, vec3 p, vec3 normal) {
     vec3 from_eye = lifted - u_eye, t = (u_texture_from_world * vec4(p, 1.0)).xyz;
     vec3 at = vec3(dot(from_eye, u_right), dot(from_eye, u_up), dot(from_eye, u_forward)) + float(NEAR) * u_to_light_view[l];
 #if NEAR > 0
-    return pow(near_field(l, t, volume_value(t)), longer) * partial_occlusion(l, at);
+    return pow(near_field(l, t, volume_value(t), false), longer) * partial_occlusion(l, at);
 #else
     return partial_occlusion(l, at);
 #endif
 #else
     vec3 t = (u_texture_from_world * vec4(p, 1.0)).xyz, t_lifted = (u_texture_from_world * vec4(lifted, 1.0)).xyz;
-    return pow(near_field(l, t, volume_value(t)), longer) * light_at(light, asked_at(l, t_lifted));
+    return pow(near_field(l, t, volume_value(t), false), longer) * light_at(light, asked_at(l, t_lifted));
 #endif
 }
 
