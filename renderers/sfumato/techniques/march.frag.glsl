@@ -206,7 +206,7 @@ void main() {
 #endif
                 float way = max(z_next - z_end, 0.0);
                 vec4 part = way * classify(next.value, there.value, magnitude);
-                if (LOOK_ON && through.a > 0.0 && (left * (through.a + part.a) > THIN || z_next - z > u_together)) break;
+                if (LOOK_ON && through.a > 0.0 && left * (through.a + part.a) > THIN) break;
                 through += part;
                 lean += part.a * float(j - i);
 #if EMISSION
@@ -215,12 +215,12 @@ void main() {
                 z_end = z_next;
                 next = there;
                 j += taken;
-                if (!LOOK_ON || left * through.a > THIN) break;
+                if (!LOOK_ON) break;
                 if (through.a <= 0.0) {
                     z = z_end;
                     here = next;
                     i = j;
-                }
+                } else if (left * (through.a + part.a) > THIN || z_end + dz - z > u_together) break;
             }
             if (LOOK_ON && through.a <= 0.0) break;
 
@@ -245,8 +245,7 @@ void main() {
 #if FACING || SPECULAR
             vec3 c = world_lit(color, alpha, a + b * z_mid, ray.origin + ray.direction * z_mid, view);
 #else
-            // At both ends, as light that lies beside the values is read: both look the same.
-            vec3 c = alpha * color * (0.5 * (world_light(a + b * z) + world_light(a + b * z_end)));
+            vec3 c = alpha * color * world_light(a + b * z_mid);
 #endif
 #elif SHADING == 5
             vec3 c = local_lit(color, alpha, a + b * (0.5 * (z + z_end)), view);

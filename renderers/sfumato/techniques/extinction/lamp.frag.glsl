@@ -30,6 +30,7 @@ uniform int u_split;                 // layers from the middle of 2^3 cells at w
 #endif
 #if PART == 2
 uniform sampler3D u_far;             // share of the light that what is far lets through
+uniform sampler3D u_matter;          // the cells themselves, before they were added up
 #endif
 uniform float u_unshadowed;          // 1: nothing is in the way
 
@@ -124,6 +125,27 @@ float through(vec3 place, int axis, vec3 along, float tangent, float end, vec2 b
     return light_of(light);
 }
 
+#if PART == 2
+// The same through what is near, from the place itself: narrow cones are narrower than a cell there, so that the cell which a
+// cone's axis meets in each layer is its box.
+float through_near(vec3 place, int axis, vec3 along, float end, vec2 beside, float stop) {
+    vec3 edge = turned(u_edge_mm, axis), way = turned(along, axis), at = turned(place, axis);
+    float steepness = max(abs(way.x), 1e-3), length_mm = edge.x / steepness, last = end / length_mm;
+    vec3 step_across = vec3(sign(way.x), way.yz / steepness * edge.x / edge.yz);
+    at.yz += beside;
+    Passing light = Passing(1.0, 0.0, 1.0);
+    for (float from = 0.5; from < min(last, stop); from += 1.0) {
+        ivec3 cell = turned_back(ivec3(floor(at + step_across * (from + 0.5))), axis);
+        if (cell != clamp(cell, ivec3(0), u_cells - 1)) break;
+        pass(light, texelFetch(u_matter, cell, 0), length_mm / u_cell_mm * min(1.0, last - from), 1.0);
+    }
+    return light_of(light);
+}
+#define THROUGH(place, axis, along, tangent, end, beside, begin, stop) through_near(place, axis, along, end, beside, stop)
+#else
+#define THROUGH through
+#endif
+
 // Two unit vectors across a third (Duff et al. 2017).
 mat2x3 across(vec3 n) {
     float s = n.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + n.z), b = n.x * n.y * a;
@@ -154,7 +176,7 @@ float all_through(vec3 place, vec4 way, int axis, float begin, float stop, out f
         // A rectangle seen from the side is narrow, and what lies behind it is not in the way.
         float tangent = u_tangent >= 0.0 ? u_tangent : u_part * max(weight, 0.1) / distance_mm;
         int its = axis < 0 ? dominant(along) : axis;
-        sum += weight / float(CONES) * through(place, its, along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k], begin, stop);
+        sum += weight / float(CONES) * THROUGH(place, its, along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k], begin, stop);
     }
 #else
     open = 1.0;
@@ -163,7 +185,7 @@ float all_through(vec3 place, vec4 way, int axis, float begin, float stop, out f
     for (int k = 0; k < CONES; ++k) {
         vec3 along = normalize(way.xyz + sides * (u_disc[k] * tangent));
         int its = axis < 0 ? dominant(along) : axis;
-        sum += through(place, its, along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], begin, stop) / float(CONES);
+        sum += THROUGH(place, its, along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], begin, stop) / float(CONES);
     }
 #endif
     return sum;
@@ -216,11 +238,13 @@ void main() {
     vec3 middle = 2.0 * floor(0.5 * vec3(cell)) + 1.0;
     vec3 main_way = way_to_lamp(middle * u_edge_mm).xyz, steep = abs(main_way / u_edge_mm);
     int axis = dominant(main_way), other = second(steep, axis);
-    float tie = steep[other] / steep[axis], open, sum = past_plane(place, middle, way, axis, main_way[axis], open);
-    // Where two axes are about as steep both count, so that nothing jumps when a lamp goes from one to the other.
-    if (tie > ABOUT_AS_STEEP) {
-        float beside = past_plane(place, middle, way, other, main_way[other], open);
-        sum = mix(sum, beside, 0.5 * smoothstep(ABOUT_AS_STEEP, 1.0, tie));
+    float tie = steep[other] / steep[axis], open, sum = 0.0;
+    // Where two axes are about as steep both count, so that nothing jumps when a lamp goes from one to the other. A loop, since
+    // software renderers run both sides of a branch.
+    float beside = 0.5 * smoothstep(ABOUT_AS_STEEP, 1.0, tie);
+    for (int k = 0; k < (beside > 0.0 ? 2 : 1); ++k) {
+        int its = k == 0 ? axis : other;
+        sum += (k == 0 ? 1.0 - beside : beside) * past_plane(place, middle, way, its, main_way[its], open);
     }
 #else
     float open, sum = all_through(place, way, -1, 0.5, 1e9, open);

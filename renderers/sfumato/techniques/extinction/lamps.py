@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,8 @@ from ...scene import Light
 from ..frame import Frame
 from ..world_light import CellGrid
 
+#: Narrow cones for what is near, at most: they start spread over a cell, and more of them changed no error (docs/extinction.md).
+NEAR_CONES = 10
 _GOLDEN_ANGLE = math.pi * (3 - math.sqrt(5))
 
 
@@ -26,6 +28,8 @@ class Emitter:
         Whether it is given by places on it, not as a disc seen from each cell.
     uniforms : dict
         What the shader needs.
+    near : dict
+        What differs of it for the cones through what is near, which are fewer.
     tangent : float
         Of the half angle under which it is seen from where it looks smallest.
     key : hashable
@@ -34,6 +38,7 @@ class Emitter:
 
     points: bool
     uniforms: dict[str, Any]
+    near: dict[str, Any]
     tangent: float
     key: Hashable
 
@@ -56,7 +61,7 @@ def emitter(frame: Frame, grid: CellGrid, light: Light) -> Emitter:
         towards = axes @ light.towards(frame.camera.basis(), frame.volume.center)
         tangent = math.tan(math.radians(light.aperture)) if tangent < 0 else tangent
         given = {"u_lamp": (*towards.tolist(), 0.0), "u_tangent": tangent}
-        return _made(False, tangent, _disc(params.cones) | free | given)
+        return _made(False, tangent, free | given, _disc, params.cones)
     place = _in_grid(frame, grid, np.asarray(light.position, dtype=float))
     radius = _radius(light)
     common: dict[str, Any] = {
@@ -67,12 +72,15 @@ def emitter(frame: Frame, grid: CellGrid, light: Light) -> Emitter:
         tangent = radius / _farthest(grid, place)
     shines = axes @ (np.asarray(light.direction) / max(float(np.linalg.norm(light.direction)), 1e-30))
     if light.kind == "area" and light.shape != "sphere":
-        places, part = _surface(light, params.cones)
         if light.shape == "rectangle":
             common["u_shines"] = tuple(shines.tolist())
-        in_grid = np.array([_in_grid(frame, grid, p) for p in places])
-        given = {"u_place": in_grid.astype(np.float32), "u_part": part}
-        return _made(True, tangent, common | _disc(params.cones) | given)
+
+        def places(count: int) -> dict[str, Any]:
+            at, part = _surface(light, count)
+            in_grid = np.array([_in_grid(frame, grid, p) for p in at])
+            return _disc(count) | {"u_place": in_grid.astype(np.float32), "u_part": part}
+
+        return _made(True, tangent, common, places, params.cones)
     if light.kind == "spot":
         inner = max(0.0, light.spread - light.edge)
         common["u_beam"] = tuple(shines.tolist())
@@ -80,7 +88,7 @@ def emitter(frame: Frame, grid: CellGrid, light: Light) -> Emitter:
         common["u_beam_edge"] = tuple(
             math.cos(math.radians(a)) for a in (light.spread, min(inner, light.spread - 0.01))
         )
-    return _made(False, tangent, _disc(params.cones) | common)
+    return _made(False, tangent, common, _disc, params.cones)
 
 
 def _radius(light: Light) -> float:
@@ -102,16 +110,19 @@ def _disc(count: int) -> dict[str, Any]:
     return {"u_disc": vogel_disc(count).astype(np.float32), "u_part": 1 / math.sqrt(count)}
 
 
-def _made(points: bool, tangent: float, given: dict[str, Any]) -> Emitter:
+def _made(
+    points: bool, tangent: float, given: dict[str, Any], cones: Callable[[int], dict[str, Any]], count: int
+) -> Emitter:
+    """Return a lamp whose cone is taken apart into so many narrow ones."""
     zero = (0.0, 0.0, 0.0)
     uniforms = {
-        "u_shines": zero, "u_beam": zero, "u_beam_edge": (1.0, -1.0), "u_reach": 0.0, "u_radius": 0.0, **given,
+        "u_shines": zero, "u_beam": zero, "u_beam_edge": (1.0, -1.0), "u_reach": 0.0, "u_radius": 0.0, **cones(count), **given,
     }  # fmt: skip
     key = tuple(
         (name, value.tobytes() if isinstance(value, np.ndarray) else value)
         for name, value in sorted(uniforms.items())
     )
-    return Emitter(points, uniforms, tangent, (points, key))
+    return Emitter(points, uniforms, cones(min(count, NEAR_CONES)), tangent, (points, key))
 
 
 def _surface(light: Light, count: int) -> tuple[np.ndarray, float]:

@@ -215,7 +215,7 @@ class TermMaker:
             for done in draw_layers(self.device, program, far):
                 yield 0.5 * done
             program = self._cones(field, grid, params, lamp, NEAR)
-            program.bind(u_far=far)
+            program.bind(u_far=far, u_matter=field.matter.cells)
             program.set(u_split=split)
             for done in self._draw_and_spread(field, grid, program, texture):
                 yield 0.5 + 0.5 * done
@@ -226,12 +226,14 @@ class TermMaker:
         self, field: Field, grid: CellGrid, params: ExtinctionParams, lamp: Emitter, part: int
     ) -> Program:
         """Return the program of a part of the way to a lamp, all set but for where the parts meet."""
-        program = self._lamp.get((("POINTS", int(lamp.points)), ("CONES", params.cones), ("PART", part)))
+        cones = len(lamp.near["u_disc"]) if part == NEAR else params.cones
+        program = self._lamp.get((("POINTS", int(lamp.points)), ("CONES", cones), ("PART", part)))
         field.matter.bind(program)
         program.bind(u_near=field.near)
         program.set(
             u_edge_mm=grid.edges_mm, u_cell_mm=grid.cell_mm, u_strength=params.strength,
-            u_first=max(1.0, max(grid.size) / params.samples), u_growth=params.growth, **lamp.uniforms,
+            u_first=max(1.0, max(grid.size) / params.samples), u_growth=params.growth,
+            **(lamp.uniforms | lamp.near if part == NEAR else lamp.uniforms),
         )  # fmt: skip
         return program
 
