@@ -174,7 +174,7 @@ def test_full_tiles_cover_every_visible_block(lattice: Lattice, seed: int) -> No
         runs = tiles.tiles[first : first + count].astype(int)
         covered = (runs[:, 1] == tile[1]) & (runs[:, 0] <= tile[0]) & (tile[0] < runs[:, 0] + runs[:, 2])
         assert covered.any()
-    assert len(tiles.full) == stack.count // GROUP + 1
+    assert len(tiles.kinds[0]) == stack.count // GROUP + 1
 
 
 def test_no_visible_block_no_tile() -> None:

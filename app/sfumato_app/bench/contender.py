@@ -10,6 +10,10 @@ import numpy as np
 class Contender(Protocol):
     """Draws one setting in one way; what happens once is done when it is made or warmed up."""
 
+    def settle(self) -> None:
+        """Bring back what others have pushed out of the budget of kept light; called before each turn, not timed."""
+        ...
+
     def draw(self) -> None:
         """Draw one frame of full quality and wait until it is finished."""
         ...

@@ -68,6 +68,9 @@ class Neighbourhood:
         folder = "techniques/extinction/"
         self._looking = Variants(self._device, folder + "neighbourhood.frag.glsl") if explicit else None
 
+    def settle(self) -> None:
+        """Nothing is kept that others could push out."""
+
     def draw(self) -> None:
         """Fill the texture."""
         self._device.make_current()

@@ -100,6 +100,7 @@ def run(lineup: Sequence[tuple[Result, Contender | None]], rounds: int, tell: Ca
 
 
 def _turn(result: Result, contender: Contender) -> None:
+    contender.settle()
     cpu, wall = time.process_time(), time.perf_counter()
     for _ in range(result.frames):
         contender.draw()

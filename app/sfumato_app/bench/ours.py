@@ -28,6 +28,8 @@ class Ours:
     ----------
     changes : mapping, optional
         By dotted paths, what is other than in the setting's scene.
+    settling : int
+        Frames that are drawn before each turn, untimed, until all is there that is kept.
     """
 
     def __init__(
@@ -37,7 +39,9 @@ class Ours:
         technique: str,
         quality: Quality = FULL,
         changes: Mapping[str, Any] | None = None,
+        settling: int = 0,
     ) -> None:
+        self._settling = settling
         self._renderer = renderer
         self._quality = quality
         self._size = setting.picture_size
@@ -48,6 +52,11 @@ class Ours:
             renderer.painter(self._scene)
         except (sfumato.SfumatoError, ImportError) as error:
             raise Unavailable(str(error)) from None
+
+    def settle(self) -> None:
+        """Draw until all is there that is kept."""
+        for _ in range(self._settling):
+            Ours.draw(self)
 
     def draw(self) -> None:
         """Draw the first frame of a new picture: its jitter, and with it the work, is always the same."""
@@ -92,8 +101,9 @@ class MovingLight(Ours):
         swing: int = SWING,
         quality: Quality = FULL,
         changes: Mapping[str, Any] | None = None,
+        settling: int = 0,
     ) -> None:
-        super().__init__(renderer, setting, technique, quality, changes)
+        super().__init__(renderer, setting, technique, quality, changes, settling)
         self._paths = [f"lights.{k}.{angle}" for k in range(len(self._scene.lights))]
         self._starts = [getattr(light, angle) for light in self._scene.lights]
         self._turns = _swing(swing)

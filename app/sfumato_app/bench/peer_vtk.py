@@ -122,6 +122,9 @@ class Vtk:
         self._stage = stage
         self._volume = stage.add(mapper(), shade=shade)
 
+    def settle(self) -> None:
+        """Nothing is kept that others could push out."""
+
     def draw(self) -> None:
         """Draw one frame."""
         self._stage.show(self._volume)

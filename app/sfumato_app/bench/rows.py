@@ -92,7 +92,7 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         # Light that rests is kept; so lamps tremble. A headlamp has no rotation: there its aperture does.
         ("directional", "directional occlusion", _moving("directional", "aperture", swing=1)),
         ("multidirectional", "multidirectional occlusion", _moving("multidirectional", "rotation", swing=1)),
-        ("multidirectional-still", "... its light kept from the frame before", _ours("multidirectional")),
+        ("multidirectional-still", "... its light kept from the frame before", _ours("multidirectional", settling=1)),
         ("multidirectional-turning", "... its light turning", _moving("multidirectional", "rotation")),
         ("multidirectional-tilting", "... its light tilting", _moving("multidirectional", "tilt")),
         (
@@ -101,7 +101,7 @@ def rows(setting: Setting) -> tuple[Row, ...]:
             _moving("multidirectional", "rotation", quality=DRAG),
         ),
         ("cone", "cone-accurate shadows, their light trembling", _moving("cone", "rotation", swing=1)),
-        ("cone-still", "... its light kept from the frame before", _ours("cone")),
+        ("cone-still", "... its light kept from the frame before", _ours("cone", settling=1)),
         ("cone-turning", "... its light turning", _moving("cone", "rotation")),
         ("cone-drag", "... at drag quality, its light turning", _moving("cone", "rotation", quality=DRAG)),
         # As published: light from all around in place of diffuse shading, so that no gradient is needed.
@@ -126,7 +126,7 @@ def tube_rows(setting: Setting) -> tuple[Row, ...]:
     """Return the rows of the table of tubes: the volume alone, and with ever more triangles."""
     table: list[tuple[str, str, Callable[[Stage, Setting], Contender]]] = [
         ("cone", "the volume alone, its light trembling", _moving("cone", "rotation", swing=1)),
-        ("cone-still", "... its light kept", _ours("cone")),
+        ("cone-still", "... its light kept", _ours("cone", settling=1)),
     ]
     for name, count in TRIANGLES.items():
         table += [
@@ -141,19 +141,19 @@ def _tubes(triangles: int, *, moving: bool) -> Callable[[Stage, Setting], Conten
         changes: dict[str, Any] = {"geometry": (tubes(triangles),)}
         if moving:
             return MovingLight(stage.renderer, setting, "combined", "rotation", 1, changes=changes)
-        return Ours(stage.renderer, setting, "combined", changes=changes)
+        return Ours(stage.renderer, setting, "combined", changes=changes, settling=1)
 
     return make
 
 
-def _ours(technique: str) -> Callable[[Stage, Setting], Contender]:
-    return lambda stage, setting: Ours(stage.renderer, setting, technique)
+def _ours(technique: str, settling: int = 0) -> Callable[[Stage, Setting], Contender]:
+    return lambda stage, setting: Ours(stage.renderer, setting, technique, settling=settling)
 
 
 def _local(kind: type[Ours] = Ours, lamps: str = "off") -> Callable[[Stage, Setting], Contender]:
     changes = {"technique.lamps": lamps, "technique.directions": LEAST}
     quality = replace(FULL, progressive=True)
-    return lambda stage, setting: kind(stage.renderer, setting, "local-occlusion", quality, changes)
+    return lambda stage, setting: kind(stage.renderer, setting, "local-occlusion", quality, changes, settling=1)
 
 
 def _moving(
@@ -166,13 +166,13 @@ def _extinction(facing: float | None = None, lamp: bool = True) -> Callable[[Sta
     changes: dict[str, Any] = {} if facing is None else {"technique.facing": facing}
     if not lamp:
         changes["lights"] = ()
-    return lambda stage, setting: Ours(stage.renderer, setting, "extinction", changes=changes)
+    return lambda stage, setting: Ours(stage.renderer, setting, "extinction", changes=changes, settling=2)
 
 
 def _moving_extinction(quality: Quality = FULL) -> Callable[[Stage, Setting], Contender]:
     changes = {"technique.facing": 0.0, "technique.resolution": 64}
     return lambda stage, setting: MovingLight(
-        stage.renderer, setting, "extinction", "rotation", quality=quality, changes=changes
+        stage.renderer, setting, "extinction", "rotation", quality=quality, changes=changes, settling=1
     )
 
 

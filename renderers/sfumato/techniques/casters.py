@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-#: Centres of blocks in which something stands along a view's axes in mm, shape (n, 3), and half their extents.
-Blocks = tuple[np.ndarray, np.ndarray]
+from .tiles import Blocks
 
 
 @dataclass(frozen=True)

@@ -158,11 +158,9 @@ class LightGrid:
 
     def tiles(self, frame: Frame, material: Material, casters: Casters = VOLUME_ALONE) -> TileLists:
         """Return what has to be swept."""
-        blocks = list(casters.blocks)
-        if casters.volume:
-            blocks.append(blocks_along(self.lattice.stack.view, frame, material))
+        volume = [blocks_along(self.lattice.stack.view, frame, material)] if casters.volume else []
         slope = float(np.hypot(*self.offsets.T).max())
-        return list_cone_tiles(self.lattice, blocks, slope, math.ceil(MAX_NEAR_TEXELS) + 1)
+        return list_cone_tiles(self.lattice, volume, casters.blocks, slope, math.ceil(MAX_NEAR_TEXELS) + 1)
 
 
 def texel_of(frame: Frame, aperture: float) -> float:
@@ -251,7 +249,7 @@ class LightSweeper:
     ) -> Iterator[float]:
         """Fill a lamp's texture, yielding the share done after each bounded piece."""
         self._make_states(grid.lattice.size)
-        pair = self._prepare(frame, material, grid, casters)
+        programs = self._prepare(frame, material, grid, casters)
         self._targets[0].use(texture, 0)
         self._targets[0].fbo.clear(1.0, 1.0, 1.0, 1.0)
         for slab in range(grid.lattice.stack.count):
@@ -263,9 +261,9 @@ class LightSweeper:
                 target.fbo.clear(1.0, 1.0, 1.0, 1.0)
             else:
                 target.clear_layer(1.0)
-            for program, span in zip(pair, self._lists.of_slab(slab), strict=True):
-                if casters.cover is not None:
-                    program.set(u_cover_at=cover_corners(slab, casters.columns, grid.lattice.size))
+            if casters.cover is not None:
+                programs[-1].set(u_cover_at=cover_corners(slab, casters.columns, grid.lattice.size))
+            for program, span in zip(programs, self._lists.of_slab(slab), strict=True):
                 self._draw(program, source, grid, slab, span)
             if slab % PASSES_PER_PIECE == 0:
                 self.device.wait()
@@ -289,22 +287,26 @@ class LightSweeper:
 
     def _prepare(
         self, frame: Frame, material: Material, grid: LightGrid, casters: Casters
-    ) -> tuple[Program, Program]:
-        """Set up the programs of full and of hollow tiles."""
-        lattice, covered = grid.lattice, casters.cover is not None
+    ) -> list[Program]:
+        """Set up the programs of full and of hollow tiles, and of those in which geometry stands."""
+        lattice = grid.lattice
         self._lists = grid.tiles(frame, material, casters)
         self._tiles.upload(self._lists)
         self._to_texture = texture_from_view(frame, lattice.stack)
         number = (("DIRECTIONS", DIRECTIONS), ("LAST", DIRECTIONS // 4), ("SHEARED", 0))
-        kind = (("HOLLOW", 0), ("GEOMETRY", int(covered)), ("VOLUME", int(casters.volume)))
-        full = self._programs.get((*number, *kind, *material_defines(material)))
-        bind_material(full, material, frame)
-        if covered:
-            full.bind(u_cover=casters.cover)
-            full.set(u_opacity=casters.opacity)
-        hollow = self._programs.get((*number, ("HOLLOW", 1), ("GEOMETRY", 0), ("VOLUME", 0)))
+        kinds = [(0, 0, int(casters.volume)), (1, 0, 0), (0, int(casters.cover is not None), int(casters.volume))]
+        programs = []
+        for hollow, covered, volume in kinds:
+            kind = (("HOLLOW", hollow), ("GEOMETRY", covered), ("VOLUME", volume))
+            program = self._programs.get((*number, *kind, *(() if hollow else material_defines(material))))
+            if not hollow:
+                bind_material(program, material, frame)
+            if covered:
+                program.bind(u_cover=casters.cover)
+                program.set(u_opacity=casters.opacity)
+            programs.append(program)
         inner, size = lattice.border - lattice.pad, lattice.size
-        for program in (full, hollow):
+        for program in programs:
             program.set(
                 u_extent=tuple(map(float, size)), u_tile_size=TILE, u_columns_low=self._lists.low, u_base=(0, 0),
                 u_inner=(inner, inner), u_outer=(size[0] - inner, size[1] - inner),
@@ -312,7 +314,7 @@ class LightSweeper:
                 **secant_uniforms(grid.secants),
                 u_texel_size=(1 / size[0], 1 / size[1]), u_thickness=lattice.stack.step,
             )  # fmt: skip
-        return full, hollow
+        return programs
 
     def _make_states(self, size: tuple[int, int]) -> None:
         if self._targets and self._targets[0].state.size == size:

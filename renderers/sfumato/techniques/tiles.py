@@ -19,41 +19,43 @@ from scipy.ndimage import maximum_filter
 from .stack import SHEAR_UNIT, Lattice
 
 #: Edge of a tile in texels.
-TILE = 16
+TILE = 8
 #: Slabs that share a list of tiles.
-GROUP = 8
+GROUP = 4
 #: Standard deviations of blur that count.
 TAIL = 3.0
+#: Slabs behind geometry, as light goes, in which what it covers counts.
+COVERED_BEHIND = 2
+#: Centres of blocks in which something stands along a view's axes in mm, shape (n, 3), and half their extents.
+Blocks = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
 class TileLists:
-    """Lists of tiles, one full and one hollow for each group of slabs.
+    """Lists of tiles, one of each kind for each group of slabs.
 
     Attributes
     ----------
     tiles : ndarray of int16, shape (n, 3)
         Runs of tiles: indices x, y of the first and their number along x; list after list.
-    full, hollow : ndarray of int, shape (groups, 2)
-        First run and number of runs.
+    kinds : tuple of ndarray of int, shape (groups, 2)
+        First run and number of runs of full tiles, of hollow ones, and of those in which geometry stands, if they
+        are told apart.
     low : (int, int)
         Column at the corner of tile (0, 0).
     """
 
     tiles: np.ndarray
-    full: np.ndarray
-    hollow: np.ndarray
+    kinds: tuple[np.ndarray, ...]
     low: tuple[int, int]
 
-    def of_slab(self, slab: int) -> tuple[tuple[int, int], tuple[int, int]]:
-        """Return (first, count) of the full and of the hollow runs at a slab."""
-        group = slab // GROUP
-        a, b = self.full[group], self.hollow[group]
-        return (int(a[0]), int(a[1])), (int(b[0]), int(b[1]))
+    def of_slab(self, slab: int) -> list[tuple[int, int]]:
+        """Return (first, count) of the runs of each kind at a slab."""
+        return [(int(first), int(count)) for first, count in (kind[slab // GROUP] for kind in self.kinds)]
 
 
 def list_tiles(
-    lattice: Lattice, blocks: Sequence[tuple[np.ndarray, np.ndarray]], variance: float, ahead: int
+    lattice: Lattice, blocks: Sequence[Blocks], variance: float, ahead: int
 ) -> TileLists:
     """Sort the tiles of a lattice.
 
@@ -76,24 +78,26 @@ def list_tiles(
     active = dirty & needed
     if lattice.rear:
         active = active[::-1]
-    return _lists(full, active & ~full, low)
+    return _lists((full, active & ~full), low)
 
 
 def list_cone_tiles(
-    lattice: Lattice, blocks: Sequence[tuple[np.ndarray, np.ndarray]], slope: float, ahead: int
+    lattice: Lattice, blocks: Sequence[Blocks], geometry: Sequence[Blocks], slope: float, ahead: int
 ) -> TileLists:
     """Sort the tiles of a lattice through which light spreads as a cone: by `slope` texels a slab to each side.
 
-    ``blocks`` are sets of centres and half sizes, as in `list_tiles`.
+    ``blocks`` of the volume and of the ``geometry`` are sets of centres and half sizes, as in `list_tiles`.
     """
-    full, low = _full_of_all(lattice, blocks, ahead)
+    full, low = _full_of_all(lattice, [*blocks, *geometry], ahead)
     near = maximum_filter(full, size=(1, 3, 3))
     active = _widening(near, slope) & _widening(near[::-1], slope)[::-1]
-    return _lists(full, active & ~full, low)
+    # What geometry covers counts in the two slabs behind it as well.
+    covered = _full_of_all(lattice, geometry, COVERED_BEHIND)[0] if geometry else np.zeros_like(full)
+    return _lists((full & ~covered, active & ~full & ~covered, covered), low)
 
 
 def _full_of_all(
-    lattice: Lattice, blocks: Sequence[tuple[np.ndarray, np.ndarray]], ahead: int
+    lattice: Lattice, blocks: Sequence[Blocks], ahead: int
 ) -> tuple[np.ndarray, tuple[int, int]]:
     """Return `_full_tiles` of several sets of blocks."""
     groups = lattice.stack.count // GROUP + 1
@@ -114,17 +118,17 @@ def _widening(tiles: np.ndarray, slope: float) -> np.ndarray:
     return behind
 
 
-def _lists(full: np.ndarray, hollow: np.ndarray, low: tuple[int, int]) -> TileLists:
-    """Write down the runs of full and of hollow tiles, shape (groups, y, x) each."""
-    groups = len(full)
+def _lists(kinds: Sequence[np.ndarray], low: tuple[int, int]) -> TileLists:
+    """Write down the runs of tiles of each kind, shape (groups, y, x) each."""
+    groups = len(kinds[0])
     rows, spans, offset = [], [], 0
-    for kind in (full, hollow):
+    for kind in kinds:
         runs, groups_of_runs = _runs(kind)
         counts = np.bincount(groups_of_runs, minlength=groups)
         spans.append(np.stack([offset + np.cumsum(counts) - counts, counts], axis=1))
         rows.append(runs)
         offset += len(runs)
-    return TileLists(np.concatenate(rows).astype(np.int16), spans[0], spans[1], low)
+    return TileLists(np.concatenate(rows).astype(np.int16), tuple(spans), low)
 
 
 def _runs(kind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
