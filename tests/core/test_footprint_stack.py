@@ -22,7 +22,7 @@ from sfumato.techniques.footprint import (
     stencil_for,
 )
 from sfumato.techniques.stack import SHEAR_UNIT, Lattice, Stack, View
-from sfumato.techniques.tiles import GROUP, TILE, list_tiles
+from sfumato.techniques.tiles import list_tiles
 
 #: Tilt and aperture in degrees.
 CONES = [(0, 20), (37, 20), (37, 1), (60, 25), (80, 9), (130, 20), (180, 60)]
@@ -169,12 +169,12 @@ def test_full_tiles_cover_every_visible_block(lattice: Lattice, seed: int) -> No
         slab = int((point[2] - stack.z0) // stack.step)
         plane = slab + lattice.rear
         column = (point[:2] - lattice.origin) / lattice.texel + np.asarray(lattice.shear) * plane / SHEAR_UNIT
-        tile = np.floor((column - tiles.low) / TILE).astype(int)
+        tile = np.floor((column - tiles.low) / tiles.tiling.edge).astype(int)
         (first, count), _hollow = tiles.of_slab(slab)
         runs = tiles.tiles[first : first + count].astype(int)
         covered = (runs[:, 1] == tile[1]) & (runs[:, 0] <= tile[0]) & (tile[0] < runs[:, 0] + runs[:, 2])
         assert covered.any()
-    assert len(tiles.kinds[0]) == stack.count // GROUP + 1
+    assert len(tiles.kinds[0]) == stack.count // tiles.tiling.group + 1
 
 
 def test_no_visible_block_no_tile() -> None:

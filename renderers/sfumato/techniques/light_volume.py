@@ -29,7 +29,7 @@ from .marcher import Material, bind_material, blocks_along, material_defines, vi
 from .stack import Lattice, Stack, View
 from .sweep import affine, texture_from_view
 from .tile_texture import TileTexture
-from .tiles import GROUP, TILE, TileLists, list_cone_tiles
+from .tiles import TileLists, list_cone_tiles
 
 #: Directions of a cone: one fetch each a texel and plane. A multiple of 4, at most 24: four to a draw buffer, of 8.
 DIRECTIONS = 16
@@ -257,7 +257,7 @@ class LightSweeper:
             self._targets = [target, source]
             target.use(texture, slab + 1)
             # Where no tile is drawn the light is clear. Tiles change with each group of slabs: both states begin anew.
-            if slab % GROUP < 2:
+            if slab % self._lists.tiling.group < 2:
                 target.fbo.clear(1.0, 1.0, 1.0, 1.0)
             else:
                 target.clear_layer(1.0)
@@ -308,7 +308,7 @@ class LightSweeper:
         inner, size = lattice.border - lattice.pad, lattice.size
         for program in programs:
             program.set(
-                u_extent=tuple(map(float, size)), u_tile_size=TILE, u_columns_low=self._lists.low, u_base=(0, 0),
+                u_extent=tuple(map(float, size)), u_tile_size=self._lists.tiling.edge, u_columns_low=self._lists.low, u_base=(0, 0),
                 u_inner=(inner, inner), u_outer=(size[0] - inner, size[1] - inner),
                 u_share=grid.shares.astype(np.float32).reshape(-1, 4),
                 **secant_uniforms(grid.secants),

@@ -22,7 +22,7 @@ from .frame import Frame
 from .marcher import Material, bind_material, blocks_along, material_defines
 from .stack import Lattice, Stack
 from .tile_texture import TileTexture
-from .tiles import TILE, TileLists, list_tiles
+from .tiles import TileLists, list_tiles
 
 #: Most slabs that one filtering serves, and its largest variance in texels squared.
 MAX_RHYTHM = 4
@@ -183,7 +183,7 @@ class Sweeper:
                 u_extent=tuple(map(float, size)), u_thickness=frame.step, u_path=lamp.path,
                 u_taps=taps,
                 u_weights=(lamp.stencil.center, *lamp.stencil.weights),
-                u_tile_size=TILE, u_columns_low=lamp.tiles.low, u_inner=(border, border),
+                u_tile_size=lamp.tiles.tiling.edge, u_columns_low=lamp.tiles.low, u_inner=(border, border),
                 u_outer=(size[0] - border, size[1] - border),
             )  # fmt: skip
         self.device.clear(self._targets[0].plain, self._clear, -1.0)

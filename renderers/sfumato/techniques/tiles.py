@@ -18,10 +18,17 @@ from scipy.ndimage import maximum_filter
 
 from .stack import SHEAR_UNIT, Lattice
 
-#: Edge of a tile in texels.
-TILE = 8
-#: Slabs that share a list of tiles.
-GROUP = 4
+
+@dataclass(frozen=True)
+class Tiling:
+    """How finely space is taken apart: edge of a tile in texels, and slabs that share a list of tiles."""
+
+    edge: int
+    group: int
+
+
+#: For the slices of the view, whose passes are cheap, and for light volumes, whose texels are dear.
+COARSE, FINE = Tiling(16, 8), Tiling(8, 4)
 #: Standard deviations of blur that count.
 TAIL = 3.0
 #: Slabs behind geometry, as light goes, in which what it covers counts.
@@ -43,15 +50,18 @@ class TileLists:
         are told apart.
     low : (int, int)
         Column at the corner of tile (0, 0).
+    tiling : Tiling
+        What a tile and a group are.
     """
 
     tiles: np.ndarray
     kinds: tuple[np.ndarray, ...]
     low: tuple[int, int]
+    tiling: Tiling
 
     def of_slab(self, slab: int) -> list[tuple[int, int]]:
         """Return (first, count) of the runs of each kind at a slab."""
-        return [(int(first), int(count)) for first, count in (kind[slab // GROUP] for kind in self.kinds)]
+        return [(int(first), int(count)) for first, count in (kind[slab // self.tiling.group] for kind in self.kinds)]
 
 
 def list_tiles(
@@ -69,8 +79,8 @@ def list_tiles(
     ahead : int
         Slabs, towards the light, from which the ray caster reads besides a sample's own.
     """
-    full, low = _full_of_all(lattice, blocks, ahead)
-    spread = math.ceil(TAIL * math.sqrt(lattice.stack.count * variance) / TILE)
+    full, low = _full_of_all(lattice, blocks, ahead, COARSE)
+    spread = math.ceil(TAIL * math.sqrt(lattice.stack.count * variance) / COARSE.edge)
     near = maximum_filter(full, size=(1, 2 * spread + 1, 2 * spread + 1))
     along = near[::-1] if lattice.rear else near
     dirty = np.maximum.accumulate(along, axis=0)
@@ -78,7 +88,7 @@ def list_tiles(
     active = dirty & needed
     if lattice.rear:
         active = active[::-1]
-    return _lists((full, active & ~full), low)
+    return _lists((full, active & ~full), low, COARSE)
 
 
 def list_cone_tiles(
@@ -88,37 +98,39 @@ def list_cone_tiles(
 
     ``blocks`` of the volume and of the ``geometry`` are sets of centres and half sizes, as in `list_tiles`.
     """
-    full, low = _full_of_all(lattice, [*blocks, *geometry], ahead)
+    full, low = _full_of_all(lattice, [*blocks, *geometry], ahead, FINE)
     near = maximum_filter(full, size=(1, 3, 3))
-    active = _widening(near, slope) & _widening(near[::-1], slope)[::-1]
+    active = _widening(near, slope, FINE) & _widening(near[::-1], slope, FINE)[::-1]
     # What geometry covers counts in the two slabs behind it as well.
-    covered = _full_of_all(lattice, geometry, COVERED_BEHIND)[0] if geometry else np.zeros_like(full)
-    return _lists((full & ~covered, active & ~full & ~covered, covered), low)
+    covered = np.zeros_like(full)
+    if geometry:
+        covered = _full_of_all(lattice, geometry, COVERED_BEHIND, FINE)[0]
+    return _lists((full & ~covered, active & ~full & ~covered, covered), low, FINE)
 
 
 def _full_of_all(
-    lattice: Lattice, blocks: Sequence[Blocks], ahead: int
+    lattice: Lattice, blocks: Sequence[Blocks], ahead: int, tiling: Tiling
 ) -> tuple[np.ndarray, tuple[int, int]]:
     """Return `_full_tiles` of several sets of blocks."""
-    groups = lattice.stack.count // GROUP + 1
+    groups = lattice.stack.count // tiling.group + 1
     sets = blocks or [(np.empty((0, 3)), np.zeros(3))]
-    found = [_full_tiles(lattice, centers, half, groups, ahead) for centers, half in sets]
+    found = [_full_tiles(lattice, centers, half, groups, ahead, tiling) for centers, half in sets]
     return np.logical_or.reduce([full for full, _ in found]), found[0][1]
 
 
-def _widening(tiles: np.ndarray, slope: float) -> np.ndarray:
+def _widening(tiles: np.ndarray, slope: float, tiling: Tiling) -> np.ndarray:
     """Return the tiles that lie behind any of these, in a cone that widens by `slope` texels a slab."""
     behind, reached = tiles.copy(), 0.0
     for group in range(1, len(tiles)):
-        reached += slope * GROUP
-        step = int(reached // TILE)
-        reached -= step * TILE
+        reached += slope * tiling.group
+        step = int(reached // tiling.edge)
+        reached -= step * tiling.edge
         before = maximum_filter(behind[group - 1], size=2 * step + 1) if step else behind[group - 1]
         behind[group] |= before
     return behind
 
 
-def _lists(kinds: Sequence[np.ndarray], low: tuple[int, int]) -> TileLists:
+def _lists(kinds: Sequence[np.ndarray], low: tuple[int, int], tiling: Tiling) -> TileLists:
     """Write down the runs of tiles of each kind, shape (groups, y, x) each."""
     groups = len(kinds[0])
     rows, spans, offset = [], [], 0
@@ -128,7 +140,7 @@ def _lists(kinds: Sequence[np.ndarray], low: tuple[int, int]) -> TileLists:
         spans.append(np.stack([offset + np.cumsum(counts) - counts, counts], axis=1))
         rows.append(runs)
         offset += len(runs)
-    return TileLists(np.concatenate(rows).astype(np.int16), tuple(spans), low)
+    return TileLists(np.concatenate(rows).astype(np.int16), tuple(spans), low, tiling)
 
 
 def _runs(kind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -139,15 +151,15 @@ def _runs(kind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _full_tiles(
-    lattice: Lattice, centers: np.ndarray, half: np.ndarray, groups: int, ahead: int
+    lattice: Lattice, centers: np.ndarray, half: np.ndarray, groups: int, ahead: int, tiling: Tiling
 ) -> tuple[np.ndarray, tuple[int, int]]:
     """Return which tiles can hold something visible in each group of slabs, and the first tile's column."""
-    stack = lattice.stack
+    stack, tile, slabs = lattice.stack, tiling.edge, tiling.group
     shear = np.asarray(lattice.shear) / SHEAR_UNIT
     # All columns that lie on some plane of the stack.
     ends = np.array([lattice.base(0), lattice.base(stack.count + 1)])
     low = ends.min(axis=0) - 1
-    shape = (ends.max(axis=0) + np.asarray(lattice.size) + 1 - low) // TILE + 1
+    shape = (ends.max(axis=0) + np.asarray(lattice.size) + 1 - low) // tile + 1
     full = np.zeros((groups, int(shape[1]), int(shape[0])), dtype=bool)
     if not len(centers):
         return full, (int(low[0]), int(low[1]))
@@ -161,14 +173,14 @@ def _full_tiles(
     )
     across = (centers[:, :2] - lattice.origin) / lattice.texel - low
     reach = half[:2] / lattice.texel + 2
-    for step in range(int((last // GROUP - first // GROUP).max()) + 1):
-        group = first // GROUP + step
-        use = group <= last // GROUP
+    for step in range(int((last // slabs - first // slabs).max()) + 1):
+        group = first // slabs + step
+        use = group <= last // slabs
         g, at = group[use], across[use]
-        begin = np.maximum(g * GROUP, first[use])[:, None] * shear
-        end = (np.minimum(g * GROUP + GROUP - 1, last[use]) + 1)[:, None] * shear
-        a = np.floor((at - reach + np.minimum(begin, end)) / TILE).astype(int)
-        b = np.floor((at + reach + np.maximum(begin, end)) / TILE).astype(int)
+        begin = np.maximum(g * slabs, first[use])[:, None] * shear
+        end = (np.minimum(g * slabs + slabs - 1, last[use]) + 1)[:, None] * shear
+        a = np.floor((at - reach + np.minimum(begin, end)) / tile).astype(int)
+        b = np.floor((at + reach + np.maximum(begin, end)) / tile).astype(int)
         _mark(full, g, a, b)
     return full, (int(low[0]), int(low[1]))
 
