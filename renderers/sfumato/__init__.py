@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 from .errors import GpuError, LoadError, SceneError, SfumatoError
 from .scene import (
+    Bookmark,
     Camera,
     ClipPlane,
     CropBox,
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Bookmark",
     "Camera",
     "ClipPlane",
     "CropBox",

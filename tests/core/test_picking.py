@@ -9,7 +9,7 @@ import pytest
 
 from sfumato import Camera, Scene, TransferFunction, Volume
 from sfumato.scene import ClipPlane, CropBox, Region
-from sfumato.scene.picking import ray_through, surface_under
+from sfumato.scene.picking import material_under, ray_through, surface_under
 
 N, RADIUS = 60, 20.0
 CENTRE = np.array([30.0, 30.0, 30.0])
@@ -92,3 +92,24 @@ def test_it_is_quick_enough_for_the_windows_thread() -> None:
     started = time.perf_counter()
     surface_under(scene, 0, 0, 1.0)
     assert time.perf_counter() - started < 0.05
+
+
+def test_the_material_that_is_seen_is_found() -> None:
+    # A thin veil of 0.3 before a solid plate of 0.8: the plate makes the picture; without it, the veil does.
+    data = np.zeros((20, 40, 20), dtype=np.float32)
+    data[:, 10:14], data[:, 25:30] = 0.3, 0.8
+    transfer = TransferFunction.from_points(
+        [(0.1, (1, 1, 1), 0.0), (0.3, (1, 0, 0), 0.03), (0.5, (1, 1, 1), 0.0), (0.7, (1, 1, 1), 0.6), (1, (1, 1, 1), 0.9)], 1.0
+    )
+    camera = Camera((10, -100, 10), (10, 20, 10), parallel_projection=True, parallel_scale=15)
+    scene = Scene(volume=Volume(data), transfer=transfer, camera=camera)
+    found = material_under(scene, 0, 0, 1.0)
+    assert found is not None
+    assert found.value == pytest.approx(0.8, abs=0.02)
+    assert found.point[1] == pytest.approx(26, abs=1.5)
+    assert found.opacity == pytest.approx(float(transfer.evaluate(np.array([found.value]))[0, 3]))
+    veil = material_under(scene.with_(crop=CropBox((0, 0, 0), (1, 0.5, 1))), 0, 0, 1.0)
+    assert veil is not None
+    assert veil.value == pytest.approx(0.3, abs=0.02)
+    assert material_under(scene, 0.95, 0.95, 1.0) is None
+    assert material_under(Scene(), 0, 0, 1.0) is None

@@ -173,3 +173,42 @@ def test_an_unknown_orientation_is_said(make_window: Any, ball_scene: Scene, qtb
         corner = image.copy(0, image.height() - 44, 100, 44)
         dark = [corner.pixelColor(x, y).lightness() < 40 for x in range(10, 90, 4) for y in range(10, 36, 4)]
         assert any(dark) != expected, "the patch in the corner says that it is unknown"
+
+
+def test_views_are_kept_chosen_renamed_and_removed(window: MainWindow, hand: Any, qtbot: QtBot) -> None:
+    window.panel.setCurrentIndex(2)
+    button, editor = window.view_page.bookmarks, window.editor
+    first = editor.scene.camera
+    window.viewport.setFocus()
+    hand.press(Qt.Key.Key_B, Qt.KeyboardModifier.ControlModifier)
+    hand.press(Qt.Key.Key_Right)
+    assert editor.scene.camera != first
+    hand.press(Qt.Key.Key_B, Qt.KeyboardModifier.ControlModifier)
+    assert [mark.name for mark in editor.scene.bookmarks] == ["View 1", "View 2"]
+    hand.press(Qt.Key.Key_N)
+    assert editor.scene.camera == first
+
+    def choose(text: str) -> None:
+        menu = button.menu()
+        button.setFocus()
+        qtbot.keyClick(button, Qt.Key.Key_Space)
+        qtbot.waitUntil(menu.isVisible)
+        enabled = [a for a in menu.actions() if a.isEnabled() and not a.isSeparator()]
+        for _ in range(1 + next(i for i, a in enumerate(enabled) if a.text().startswith(text))):
+            qtbot.keyClick(menu, Qt.Key.Key_Down)
+        qtbot.keyClick(menu, Qt.Key.Key_Return)
+        qtbot.waitUntil(lambda: not menu.isVisible())
+
+    choose("View 2")
+    assert editor.scene.camera == editor.scene.bookmarks[1].camera
+    choose("Rename View 2")
+    qtbot.keyClicks(button.ask.text, "View 1")
+    assert button.ask.complaint == "This name is taken"
+    button.ask.text.selectAll()
+    qtbot.keyClicks(button.ask.text, "From the right")
+    qtbot.keyClick(button.ask.text, Qt.Key.Key_Return)
+    assert editor.scene.bookmarks[1].name == "From the right"
+    choose("Remove From the right")
+    assert [mark.name for mark in editor.scene.bookmarks] == ["View 1"]
+    editor.undo()
+    assert len(editor.scene.bookmarks) == 2

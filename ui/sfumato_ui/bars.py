@@ -156,6 +156,7 @@ class ToolStrip(QFrame):
                 "Shadow", "Shadow: drag the lamp's shadow to where it is to fall", "tool-shadow"
             ),
             "clip": _explained("Clip", "Clip: drag the faces of the crop box and the planes", "tool-clip"),
+            "pick": _explained("Pick", "Pick: press on a material to find it in the function", "tool-pick"),
         }
         self.vtk = _explained(
             "VTK view", "VTK view beside the picture: pick lines, place seeds and regions", "vtk"

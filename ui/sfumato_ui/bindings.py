@@ -61,9 +61,12 @@ _FIXED = (
     Command("tool-light", "Tool: Light", "Tool", ("L",)),
     Command("tool-shadow", "Tool: Shadow", "Tool", ("S",)),
     Command("tool-clip", "Tool: Clip", "Tool", ("C",)),
+    Command("tool-pick", "Tool: Pick", "Tool", ("P",)),
     Command("exposure", "Automatic exposure", "View", ("X",)),
     Command("audit", "Shadow audit: mark what shadows hide", "Light", ("A",)),
     Command("fit", "See the whole subject", "View", ("Home",)),
+    Command("bookmark", "Keep this view", "View", ("Ctrl+B",)),
+    Command("bookmark-next", "Next kept view", "View", ("N",)),
 )
 #: Keys that the picture, the controls and the dialogs need for themselves, with what they do.
 RESERVED = {

@@ -20,6 +20,7 @@ _GLYPHS = {
     "highlight": "ph.sparkle",
     "fit": "ph.corners-out",
     "clip": "ph.crop",
+    "pick": "ph.eyedropper",
     "flip": "ph.arrows-left-right",
     "add": "ph.plus",
     "duplicate": "ph.copy",

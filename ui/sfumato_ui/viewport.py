@@ -40,7 +40,7 @@ from .shadow_audit import words_of
 from .shadow_floor import badge_of
 from .subject import is_open, size_of
 from .theme import DARK, PICTURE_GREY
-from .tools import ClipTool, HandleTool, LightTool, PictureView, ShadowBar, ShadowTool
+from .tools import ClipTool, HandleTool, LightTool, PickTool, PictureView, ShadowBar, ShadowTool
 from .tools import light as light_tool
 
 _MODIFIER = Qt.KeyboardModifier
@@ -76,11 +76,12 @@ class Viewport(QWidget):
         #: Whether the lamp in the hand has a place.
         self._carried = False
         #: The tools that have handles.
-        shadow = ShadowTool(editor)
+        shadow, self.pick_tool = ShadowTool(editor), PickTool(editor)
         self.tools: dict[str, HandleTool] = {
             "light": self._light_tool,
             "shadow": shadow,
             "clip": ClipTool(editor, self.clips),
+            "pick": self.pick_tool,
         }
         self.shadow_bar = ShadowBar(editor, shadow)
         self.hint = ""
@@ -121,7 +122,7 @@ class Viewport(QWidget):
     # -- the tool ---------------------------------------------------------------------------------
     @property
     def tool(self) -> str:
-        """The active tool: ``orbit``, ``light``, ``shadow`` or ``clip``."""
+        """The active tool: ``orbit``, ``light``, ``shadow``, ``clip`` or ``pick``."""
         return self._tool
 
     @tool.setter

@@ -20,6 +20,7 @@ from qtpy.QtGui import (
 from qtpy.QtWidgets import QApplication, QGridLayout, QMainWindow, QSplitter, QTabWidget, QWidget
 
 from sfumato import Document, Scene
+from sfumato.scene.picking import Found
 
 from . import camera_moves
 from .auto_exposure import AutoExposure
@@ -169,6 +170,7 @@ class MainWindow(QMainWindow):
         self.view_page.theme_chosen.connect(self.set_theme)
         self.view_page.scale_bar_chosen.connect(self.viewport.set_scale_bar)
         self.view_page.frames_chosen.connect(self.driver.set_frames)
+        self.viewport.pick_tool.picked.changed.connect(self._show_material)
         self.viewport.clips.added.connect(lambda: self.strip.choose("clip"))
         self.light_page.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
         self.light_page.own_rigs.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
@@ -254,6 +256,11 @@ class MainWindow(QMainWindow):
         camera = camera_moves.whole_view(self.editor.scene, self.viewport.aspect, view)
         if camera is not None:
             self.editor.change(f"View from the {view}" if view else "See the whole", camera=camera)
+
+    def _show_material(self, found: Found) -> None:
+        """Show where a material that was picked lies in the function."""
+        self.panel.setCurrentWidget(self.material_page)
+        self.material_page.transfer.plot.pick(found.value)
 
     def _show_building(self, done: float, text: str) -> None:
         """Tell how far meshes are, unless the bar tells of an error or asks something."""

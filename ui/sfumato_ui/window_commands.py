@@ -36,6 +36,8 @@ def window_commands(window: MainWindow) -> Commands:
         "audit": window.light_page.audit.on.toggle,
         "theme": lambda: window.set_theme(_other_theme()),
         "fit": lambda: window.look(""),
+        "bookmark": window.view_page.bookmarks.marks.keep,
+        "bookmark-next": window.view_page.bookmarks.marks.go_on,
         **{f"tool-{name}": partial(window.strip.choose, name) for name in window.strip.tools},
         "tool-orbit": partial(_escape, window),
         **{
@@ -64,6 +66,8 @@ def _possible(window: MainWindow) -> dict[str, Callable[[], bool]]:
         **{f"rig-{n}": partial(_can_be_clicked, window, n) for n in rigs()},
         **{f"technique-{n}": volume for n in techniques()},
         "audit": opened,
+        "bookmark": window.view_page.bookmarks.marks.can_keep,
+        "bookmark-next": lambda: bool(window.editor.scene.bookmarks),
         "exposure": volume,
         "undo": lambda: bool(window.editor.document.undo_label),
         "redo": lambda: bool(window.editor.document.redo_label),

@@ -4,7 +4,7 @@
 content, so that any part can be the key of a cache.
 """
 
-from .camera import STANDARD_VIEWS, Basis, Camera
+from .camera import STANDARD_VIEWS, Basis, Bookmark, Camera
 from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
 from .document import Document
 from .geometry import Geometry, Lines, Mesh, Roi, Seeds, Surface, Tracing
@@ -21,6 +21,7 @@ __all__ = [
     "MAX_OPACITY",
     "STANDARD_VIEWS",
     "Basis",
+    "Bookmark",
     "Camera",
     "ClipPlane",
     "CropBox",

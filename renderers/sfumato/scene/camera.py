@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 Vec3 = tuple[float, float, float]
 
+#: Longest name of a bookmark.
+MAX_NAME = 60
 #: Where the camera stands, seen from the subject, and what is up (LPS: +x left, +y posterior, +z superior).
 STANDARD_VIEWS: dict[str, tuple[Vec3, Vec3]] = {
     "front": ((0, -1, 0), (0, 0, 1)),
@@ -178,3 +180,16 @@ class Camera:
     def standard(volume: Volume, view: str = "front", **options: object) -> Camera:
         """Return a standard view of a whole volume; options as in `fit`."""
         return Camera.fit(volume.corners(), view, **options)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class Bookmark:
+    """A camera that is kept under a name, to come back to."""
+
+    name: Annotated[str, Param("What it is called")] = "View"
+    camera: Camera = field(default_factory=Camera)
+
+    def __post_init__(self) -> None:
+        check(self)
+        if not self.name.strip() or len(self.name) > MAX_NAME:
+            raise SceneError("name", self.name, f"a text of 1 to {MAX_NAME} characters is needed here")

@@ -5,6 +5,8 @@ Only the voxels along one ray are looked at, so that it takes milliseconds howev
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .camera import Camera, Vec3
@@ -15,6 +17,8 @@ from .volume import Volume
 STEP_VOXELS = 0.5
 #: Transmittance below which a ray has met a surface: half of what lies behind is hidden.
 HALF_HIDDEN = 0.5
+#: Least opacity of a ray in which a material is found.
+LEAST_SEEN = 0.02
 #: How far towards a light what a surface takes of it is counted as the surface's own.
 SKIN_VOXELS = 4.0
 
@@ -43,6 +47,45 @@ def surface_under(scene: Scene, x: float, y: float, aspect: float) -> Vec3 | Non
     along = points[1] - points[0] if len(points) > 1 else np.zeros(3)
     place = points[hit] + along * ((wanted - before[hit]) / taken[hit] - 0.5)
     return float(place[0]), float(place[1]), float(place[2])
+
+
+@dataclass(frozen=True)
+class Found:
+    """The material that is seen at a place of the picture.
+
+    Attributes
+    ----------
+    point : (float, float, float)
+        Where it lies: half of what is seen there comes from before it, world mm.
+    value : float
+        Median of the values that are seen, weighted by how much of the picture they make; the volume's unit.
+    opacity : float
+        What the transfer function gives this value, per unit distance; 0 to 1.
+    """
+
+    point: Vec3
+    value: float
+    opacity: float
+
+
+def material_under(scene: Scene, x: float, y: float, aspect: float) -> Found | None:
+    """Return the material that is seen at a place of the picture (as in `surface_under`); None where nothing is."""
+    points, before, taken = ray_samples(scene, x, y, aspect)
+    seen = np.exp(-before) * -np.expm1(-taken)
+    if scene.volume is None or scene.transfer is None or seen.sum() < LEAST_SEEN:
+        return None
+    values = _values_at(scene.volume, points)
+    order = np.argsort(values)
+    value = float(values[order[_half_of(seen[order])]])
+    point = points[_half_of(seen)]
+    opacity = float(scene.transfer.evaluate(np.array([value]))[0, 3]) if not scene.transfer.regions else 0.0
+    return Found((float(point[0]), float(point[1]), float(point[2])), value, opacity)
+
+
+def _half_of(weights: np.ndarray) -> int:
+    """Return where the sum of weights passes its half."""
+    running = np.cumsum(weights)
+    return int(np.searchsorted(running, running[-1] / 2))
 
 
 def ray_samples(scene: Scene, x: float, y: float, aspect: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -141,8 +184,7 @@ def _extinction_at(scene: Scene, volume: Volume, points: np.ndarray) -> np.ndarr
     """Return the extinction per mm at world points (n, 3)."""
     transfer = scene.transfer
     assert transfer is not None
-    matrix, dims = volume.texture_from_world, np.array(volume.dims)
-    index = (points @ matrix[:3, :3].T + matrix[:3, 3]) * dims - 0.5
+    index = _index_of(volume, points)
     values = _trilinear(volume.data, index)
     if not transfer.regions:
         return transfer.extinction(transfer.evaluate(values)[:, 3], volume.unit_distance)
@@ -155,12 +197,23 @@ def _extinction_at(scene: Scene, volume: Volume, points: np.ndarray) -> np.ndarr
     return transfer.extinction(transfer.evaluate_2d(values, gradient)[:, 3], volume.unit_distance)
 
 
+def _index_of(volume: Volume, points: np.ndarray) -> np.ndarray:
+    """Return the voxel indices (x, y, z) of world points (n, 3)."""
+    matrix = volume.texture_from_world
+    return np.asarray((points @ matrix[:3, :3].T + matrix[:3, 3]) * np.array(volume.dims) - 0.5)
+
+
+def _values_at(volume: Volume, points: np.ndarray) -> np.ndarray:
+    """Return the volume's values at world points (n, 3)."""
+    return _trilinear(volume.data, _index_of(volume, points))
+
+
 def value_gradient(scene: Scene, points: np.ndarray) -> np.ndarray:
     """Return the gradient of the volume's value per mm at world points, shape (n, 3), as the renderer takes it."""
     volume = scene.volume
     assert volume is not None
     matrix, dims = volume.texture_from_world[:3], np.array(volume.dims)
-    index = (points @ matrix[:, :3].T + matrix[:, 3]) * dims - 0.5
+    index = _index_of(volume, points)
     per_voxel = [
         (_trilinear(volume.data, index + e) - _trilinear(volume.data, index - e)) / 2 for e in np.eye(3)
     ]
@@ -200,7 +253,9 @@ def _trilinear(data: np.ndarray, index: np.ndarray) -> np.ndarray:
 
 
 __all__ = [
+    "Found",
     "light_depths",
+    "material_under",
     "ray_samples",
     "ray_through",
     "surface_under",

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from ..errors import LoadError, SceneError
-from .camera import Camera
+from .camera import Bookmark, Camera
 from .clip import MAX_CLIP_PLANES, ClipPlane, CropBox
 from .geometry import Geometry, with_paths
 from .light import Light, shining
@@ -26,6 +26,7 @@ from .white import WHITE
 FORMAT_VERSION = 1
 #: A technique may use fewer: the first of those that shine.
 MAX_LIGHTS = 16
+MAX_BOOKMARKS = 64
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,8 @@ class Scene:
         Clip planes (up to six) and crop box.
     geometry : sequence of Geometry
         Tracts, streamlines and surfaces (`sfumato.load_geometry`).
+    bookmarks : sequence of Bookmark
+        Cameras to come back to, up to sixty-four, each name once.
 
     Raises
     ------
@@ -151,6 +154,7 @@ class Scene:
     clip: tuple[ClipPlane, ...] = ()
     crop: CropBox = field(default_factory=CropBox)
     geometry: tuple[Geometry, ...] = ()
+    bookmarks: tuple[Bookmark, ...] = ()
 
     def __post_init__(self) -> None:
         from ..techniques import params_of
@@ -161,6 +165,10 @@ class Scene:
             raise SceneError("lights", f"{len(self.lights)} lights", f"at most {MAX_LIGHTS}")
         if len(self.clip) > MAX_CLIP_PLANES:
             raise SceneError("clip", f"{len(self.clip)} planes", f"at most {MAX_CLIP_PLANES}")
+        if len(self.bookmarks) > MAX_BOOKMARKS:
+            raise SceneError("bookmarks", f"{len(self.bookmarks)} bookmarks", f"at most {MAX_BOOKMARKS}")
+        if len({b.name for b in self.bookmarks}) < len(self.bookmarks):
+            raise SceneError("bookmarks", [b.name for b in self.bookmarks], "each name once")
         if self.volume is not None:
             self._fill_in_defaults(self.volume)
         elif self.geometry and self.camera is None:
@@ -338,13 +346,15 @@ _NESTED: dict[str, type] = {
     "crop": CropBox,
     "lights": Light,
     "clip": ClipPlane,
+    "bookmarks": Bookmark,
 }
+_LISTS = ("lights", "clip", "bookmarks")
 
 
 def _nested(name: str, value: Any) -> Any:
     if value is None:
         return None
-    if name in ("lights", "clip"):
+    if name in _LISTS:
         if not isinstance(value, list):
             raise SceneError(name, value, "a list is needed here")
         return tuple(from_json(_NESTED[name], v, f"{name}.{i}") for i, v in enumerate(value))

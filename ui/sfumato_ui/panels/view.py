@@ -1,4 +1,4 @@
-"""The View tab: standard views, projection, lens, clip planes, crop box, geometry, exposure, background.
+"""The View tab: standard and kept views, projection, lens, clip planes, crop box, geometry, exposure, background.
 
 Under More: quality of the still picture, sampling, theme.
 """
@@ -21,6 +21,7 @@ from sfumato.scene import STANDARD_VIEWS, fields_of
 
 from .. import camera_moves
 from ..bindings import explain
+from ..bookmarks import BookmarkButton
 from ..clip_controls import ClipControls, CropControls
 from ..clip_planes import ClipPlanes
 from ..editing import Editor
@@ -60,6 +61,7 @@ class ViewPage(Page):
         self.views = self._view_buttons()
         self.parallel = QCheckBox("Orthographic")
         self.parallel.setToolTip("Parallel projection: no foreshortening, lengths can be compared")
+        self.bookmarks = BookmarkButton(editor)
         self.lens = slider_for(fields_of(Camera)["view_angle"])
         self.clip = ClipControls(editor, clips)
         self.crop = CropControls(editor, clips)
@@ -87,7 +89,8 @@ class ViewPage(Page):
         self.column.setSpacing(4)
         self.add_heading("Camera")
         self.add(self.views)
-        self.add(self.parallel)
+        self.add(self._projection_row())
+        self.add(self.bookmarks.ask)
         self.add(self.lens)
         self.add_heading("Clip planes")
         self.add(self.clip)
@@ -123,6 +126,14 @@ class ViewPage(Page):
             button.clicked.connect(lambda _=False, name=name: self.view_chosen.emit(name))
             grid.addWidget(button, i // 3, i % 3)
         return box
+
+    def _projection_row(self) -> QWidget:
+        row = QWidget()
+        layout = QHBoxLayout(row)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.parallel, 1)
+        layout.addWidget(self.bookmarks)
+        return row
 
     def _background_row(self) -> QWidget:
         row = QWidget()
@@ -210,7 +221,7 @@ class ViewPage(Page):
             button.setChecked(color == scene.background)
         self.theme.setCurrentIndex(self.theme.findData(current_theme().name, Qt.ItemDataRole.UserRole))
         camera = scene.camera
-        for widget in (self.views, self.parallel, self.lens):
+        for widget in (self.views, self.parallel, self.bookmarks, self.lens):
             widget.setEnabled(camera is not None)
         if camera is not None:
             self.parallel.blockSignals(True)

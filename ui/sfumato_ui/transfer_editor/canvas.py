@@ -26,6 +26,15 @@ HIT = 12.0
 CLOSEST = 1 / 400
 
 
+def told(value: float, opacity: float, zero: float | None, decimals: int) -> str:
+    """Return a value of the volume, its opacity and the usual tissue in words; `zero` is the value of 0 HU, if any."""
+    shown = value - (zero or 0.0)
+    unit = " HU" if zero is not None else ""
+    words = [f"{painting.text_of(shown, decimals)}{unit}", f"{100 * opacity:.3g} %"]
+    name = tissue.tissue_at(shown) if zero is not None else ""
+    return "   ".join([*words, name] if name else words)
+
+
 class TransferCanvas(QWidget):
     """Shows the points of the scene's function; which one is selected is its own affair."""
 
@@ -42,6 +51,8 @@ class TransferCanvas(QWidget):
         self._range, self._whole = (0.0, 1.0), (0.0, 1.0)
         self._selected = -1
         self._hover: QPointF | None = None
+        #: Value of the material that was picked in the picture.
+        self.picked: float | None = None
         #: What the drag that is going on does with each move.
         self._drag: Callable[[QMouseEvent], None] | None = None
         self._ground: tuple[tuple[object, ...], QPixmap] | None = None
@@ -92,7 +103,7 @@ class TransferCanvas(QWidget):
         self.update()
 
     def _show_volume(self, scene: Scene) -> None:
-        self._selected, self._drag = -1, None
+        self._selected, self._drag, self.picked = -1, None, None
         if scene.volume is None:
             return
         self.zero = hounsfield_zero(scene.volume)
@@ -113,6 +124,24 @@ class TransferCanvas(QWidget):
         self.point_selected.emit(self.selected)
         self.update()
 
+    def pick(self, value: float) -> None:
+        """Mark the value of a material that was picked in the picture, and select the point nearest to it."""
+        self.picked = value
+        low, high = self._range
+        if not low <= value <= high:
+            self._show_range(value - (high - low) / 2, value + (high - low) / 2)
+        if self.transfer is not None:
+            away = [abs(point.value - value) for point in self.transfer.points]
+            self.select(min(range(len(away)), key=away.__getitem__))
+        self.update()
+
+    def _picked_points(self) -> tuple[int, ...]:
+        """Return the points between which the picked value lies."""
+        if self.picked is None or self.transfer is None:
+            return ()
+        after = sum(point.value <= self.picked for point in self.transfer.points)
+        return tuple(i for i in (after - 1, after) if 0 <= i < len(self.transfer.points))
+
     def _describe(self) -> None:
         transfer, index = self.transfer, self.selected
         if transfer is None or index < 0:
@@ -123,10 +152,7 @@ class TransferCanvas(QWidget):
 
     def _told(self, value: float, opacity: float) -> str:
         """Return value, opacity and the usual tissue in words."""
-        shown = value - (self.zero or 0.0)
-        words = [f"{painting.text_of(shown, self.decimals)} {self.unit}".strip(), f"{100 * opacity:.3g} %"]
-        name = tissue.tissue_at(shown) if self.zero is not None else ""
-        return "   ".join([*words, name] if name else words)
+        return told(value, opacity, self.zero, self.decimals)
 
     # -- view -------------------------------------------------------------------------------------
     def zoom(self, factor: float, about: float) -> None:
@@ -181,6 +207,8 @@ class TransferCanvas(QWidget):
             return
         curve = painting.curve_of(transfer, scale)
         painting.draw_function(painter, areas, curve, painting.colours_of(transfer, scale), theme)
+        if self.picked is not None:
+            painting.draw_picked(painter, scale, self.picked, theme)
         self._draw_points(painter, scale, transfer)
         self._draw_readout(painter, areas, scale, transfer)
 
@@ -221,6 +249,7 @@ class TransferCanvas(QWidget):
 
     def _draw_points(self, painter: QPainter, scale: Scale, transfer: TransferFunction) -> None:
         hot = self._point_under(self._hover) if self._hover is not None and self._drag is None else -1
+        picked = self._picked_points()
         order = sorted(range(len(transfer.points)), key=lambda i: i == self.selected)
         for i in order:
             point = transfer.points[i]
@@ -232,7 +261,7 @@ class TransferCanvas(QWidget):
                     to_srgb(point.color),
                     current_theme(),
                     selected=i == self.selected,
-                    hot=i == hot,
+                    hot=i == hot or i in picked,
                 )
 
     def _draw_readout(

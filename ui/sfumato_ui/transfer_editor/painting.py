@@ -197,6 +197,14 @@ def draw_point(
     painter.drawEllipse(at, radius, radius)
 
 
+def draw_picked(painter: QPainter, scale: Scale, value: float, theme: Theme) -> None:
+    """Draw where the value lies that was picked in the picture."""
+    x = scale.at(value, 0).x()
+    if scale.rect.left() - 1 <= x <= scale.rect.right() + 1:
+        painter.setPen(QPen(QColor(theme.accent), 1.5, Qt.PenStyle.DashLine))
+        painter.drawLine(QPointF(x, scale.rect.top()), QPointF(x, scale.rect.bottom()))
+
+
 def draw_readout(painter: QPainter, areas: Areas, text: str, theme: Theme) -> None:
     """Write what lies under the pointer in the tissues' line, else into the plot's upper left corner."""
     metrics = QFontMetricsF(painter.font())
