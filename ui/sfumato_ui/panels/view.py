@@ -90,7 +90,6 @@ class ViewPage(Page):
         self.add_heading("Camera")
         self.add(self.views)
         self.add(self._projection_row())
-        self.add(self.bookmarks.ask)
         self.add(self.lens)
         self.add_heading("Clip planes")
         self.add(self.clip)
@@ -128,12 +127,16 @@ class ViewPage(Page):
         return box
 
     def _projection_row(self) -> QWidget:
-        row = QWidget()
-        layout = QHBoxLayout(row)
-        layout.setContentsMargins(0, 0, 0, 0)
+        rows = QWidget()
+        column = QVBoxLayout(rows)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(4)
+        layout = QHBoxLayout()
         layout.addWidget(self.parallel, 1)
         layout.addWidget(self.bookmarks)
-        return row
+        column.addLayout(layout)
+        column.addWidget(self.bookmarks.ask)
+        return rows
 
     def _background_row(self) -> QWidget:
         row = QWidget()
