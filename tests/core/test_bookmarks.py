@@ -11,7 +11,10 @@ from sfumato import Bookmark, Camera, Scene, SceneError
 
 
 def test_kept_views_are_saved_with_the_scene(tmp_path: Path) -> None:
-    marks = (Bookmark("Face", Camera(position=(0.0, -300.0, 0.0))), Bookmark("Crown", Camera(position=(0.0, -1.0, 400.0))))
+    marks = (
+        Bookmark("Face", Camera(position=(0.0, -300.0, 0.0))),
+        Bookmark("Crown", Camera(position=(0.0, -1.0, 400.0))),
+    )
     scene = Scene(volume=sfumato.load("sample:hand"), bookmarks=marks)
     scene.save(tmp_path / "a.sfumato")
     assert Scene.open(tmp_path / "a.sfumato").bookmarks == marks

@@ -99,7 +99,14 @@ def test_the_material_that_is_seen_is_found() -> None:
     data = np.zeros((20, 40, 20), dtype=np.float32)
     data[:, 10:14], data[:, 25:30] = 0.3, 0.8
     transfer = TransferFunction.from_points(
-        [(0.1, (1, 1, 1), 0.0), (0.3, (1, 0, 0), 0.03), (0.5, (1, 1, 1), 0.0), (0.7, (1, 1, 1), 0.6), (1, (1, 1, 1), 0.9)], 1.0
+        [
+            (0.1, (1, 1, 1), 0.0),
+            (0.3, (1, 0, 0), 0.03),
+            (0.5, (1, 1, 1), 0.0),
+            (0.7, (1, 1, 1), 0.6),
+            (1, (1, 1, 1), 0.9),
+        ],
+        1.0,
     )
     camera = Camera((10, -100, 10), (10, 20, 10), parallel_projection=True, parallel_scale=15)
     scene = Scene(volume=Volume(data), transfer=transfer, camera=camera)

@@ -271,7 +271,9 @@ def test_no_lamp_leaves_the_subject_dark(still: Callable[..., Scene]) -> None:
 def test_what_is_thin_is_shaded_together_and_looks_the_same(
     monkeypatch: pytest.MonkeyPatch, technique: str, tilt: float
 ) -> None:
-    fog = TransferFunction.from_points([(0.0, (1, 1, 1), 0.01), (0.5, (1, 1, 1), 0.03), (1, (1, 1, 1), 0.999)], 1.0)
+    fog = TransferFunction.from_points(
+        [(0.0, (1, 1, 1), 0.01), (0.5, (1, 1, 1), 0.03), (1, (1, 1, 1), 0.999)], 1.0
+    )
     scene = stage(Light(tilt=tilt, aperture=15, rotation=140), technique=technique, transfer=fog)
     together = linear(scene)
     monkeypatch.setattr(marcher, "TOGETHER_VOXELS", 0.0)

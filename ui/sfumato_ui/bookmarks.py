@@ -1,4 +1,4 @@
-"""Cameras kept under names: a button with a menu, and the line in which a name is asked. They are saved with the scene."""
+"""Cameras kept under names, saved with the scene: a button with a menu, and the line in which a name is asked."""
 
 from __future__ import annotations
 
@@ -130,7 +130,9 @@ class BookmarkButton(QPushButton):
 
     def _ask_name(self, index: int) -> None:
         self._target = index
-        self.ask.ask_name("Rename", self.marks.kept[index].name, lambda text: self.marks.complaint(text, index))
+        self.ask.ask_name(
+            "Rename", self.marks.kept[index].name, lambda text: self.marks.complaint(text, index)
+        )
 
 
 __all__ = ["BookmarkButton", "Bookmarks"]

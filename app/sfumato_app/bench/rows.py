@@ -92,7 +92,11 @@ def rows(setting: Setting) -> tuple[Row, ...]:
         # Light that rests is kept; so lamps tremble. A headlamp has no rotation: there its aperture does.
         ("directional", "directional occlusion", _moving("directional", "aperture", swing=1)),
         ("multidirectional", "multidirectional occlusion", _moving("multidirectional", "rotation", swing=1)),
-        ("multidirectional-still", "... its light kept from the frame before", _ours("multidirectional", settling=1)),
+        (
+            "multidirectional-still",
+            "... its light kept from the frame before",
+            _ours("multidirectional", settling=1),
+        ),
         ("multidirectional-turning", "... its light turning", _moving("multidirectional", "rotation")),
         ("multidirectional-tilting", "... its light tilting", _moving("multidirectional", "tilt")),
         (
@@ -153,7 +157,9 @@ def _ours(technique: str, settling: int = 0) -> Callable[[Stage, Setting], Conte
 def _local(kind: type[Ours] = Ours, lamps: str = "off") -> Callable[[Stage, Setting], Contender]:
     changes = {"technique.lamps": lamps, "technique.directions": LEAST}
     quality = replace(FULL, progressive=True)
-    return lambda stage, setting: kind(stage.renderer, setting, "local-occlusion", quality, changes, settling=1)
+    return lambda stage, setting: kind(
+        stage.renderer, setting, "local-occlusion", quality, changes, settling=1
+    )
 
 
 def _moving(

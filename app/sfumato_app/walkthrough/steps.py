@@ -208,8 +208,17 @@ def _drag_point(hand: Hand) -> None:
     hand.rest()
 
 
+def _pick(hand: Hand) -> None:
+    viewport = hand.window.viewport
+    hand.press(Qt.Key.Key_P)
+    hand.click(viewport, viewport.rect().center() + QPoint(0, 20))
+    hand.rest()
+
+
 # -- View ------------------------------------------------------------------------------------------
 def _view(hand: Hand) -> None:
+    hand.window.viewport.setFocus()
+    hand.press(Qt.Key.Key_Escape)
     hand.choose_tab(2)
     hand.click(hand.window.view_page.parallel, QPoint(12, hand.window.view_page.parallel.height() // 2))
     hand.rest()
@@ -361,6 +370,7 @@ WALK: tuple[Step, ...] = (
     ("material", "Material: function over the histogram, presets", _material),
     ("preset", "Another preset", _preset),
     ("point", "A point of the function is dragged", _drag_point),
+    ("pick", "Pick: what lies under the pointer, found in the function", _pick),
     ("view", "View: orthographic", _view),
     ("clip-plane", "A clip plane, moved by its handle", _clip_plane),
     ("crop", "The crop box, moved by its handle", _crop),

@@ -135,7 +135,9 @@ class LightGrid:
         matrix[:2] /= self.lattice.texel
         matrix[2, 3] -= stack.z0
         matrix[2] /= stack.step
-        matrix[2, 3] += 1.0  # layer 0 lies half a slab before the first plane, the others in the middle of slabs
+        matrix[2, 3] += (
+            1.0  # layer 0 lies half a slab before the first plane, the others in the middle of slabs
+        )
         return np.asarray(matrix / np.append(size, 1)[:, None])
 
     @functools.cached_property
@@ -285,16 +287,18 @@ class LightSweeper:
         )
         program.draw_rects(count)
 
-    def _prepare(
-        self, frame: Frame, material: Material, grid: LightGrid, casters: Casters
-    ) -> list[Program]:
+    def _prepare(self, frame: Frame, material: Material, grid: LightGrid, casters: Casters) -> list[Program]:
         """Set up the programs of full and of hollow tiles, and of those in which geometry stands."""
         lattice = grid.lattice
         self._lists = grid.tiles(frame, material, casters)
         self._tiles.upload(self._lists)
         self._to_texture = texture_from_view(frame, lattice.stack)
         number = (("DIRECTIONS", DIRECTIONS), ("LAST", DIRECTIONS // 4), ("SHEARED", 0))
-        kinds = [(0, 0, int(casters.volume)), (1, 0, 0), (0, int(casters.cover is not None), int(casters.volume))]
+        kinds = [
+            (0, 0, int(casters.volume)),
+            (1, 0, 0),
+            (0, int(casters.cover is not None), int(casters.volume)),
+        ]
         programs = []
         for hollow, covered, volume in kinds:
             kind = (("HOLLOW", hollow), ("GEOMETRY", covered), ("VOLUME", volume))
@@ -308,7 +312,8 @@ class LightSweeper:
         inner, size = lattice.border - lattice.pad, lattice.size
         for program in programs:
             program.set(
-                u_extent=tuple(map(float, size)), u_tile_size=self._lists.tiling.edge, u_columns_low=self._lists.low, u_base=(0, 0),
+                u_extent=tuple(map(float, size)), u_tile_size=self._lists.tiling.edge,
+                u_columns_low=self._lists.low, u_base=(0, 0),
                 u_inner=(inner, inner), u_outer=(size[0] - inner, size[1] - inner),
                 u_share=grid.shares.astype(np.float32).reshape(-1, 4),
                 **secant_uniforms(grid.secants),

@@ -61,12 +61,13 @@ class TileLists:
 
     def of_slab(self, slab: int) -> list[tuple[int, int]]:
         """Return (first, count) of the runs of each kind at a slab."""
-        return [(int(first), int(count)) for first, count in (kind[slab // self.tiling.group] for kind in self.kinds)]
+        return [
+            (int(first), int(count))
+            for first, count in (kind[slab // self.tiling.group] for kind in self.kinds)
+        ]
 
 
-def list_tiles(
-    lattice: Lattice, blocks: Sequence[Blocks], variance: float, ahead: int
-) -> TileLists:
+def list_tiles(lattice: Lattice, blocks: Sequence[Blocks], variance: float, ahead: int) -> TileLists:
     """Sort the tiles of a lattice.
 
     Parameters

@@ -13,7 +13,8 @@ from ...scene import Light
 from ..frame import Frame
 from ..world_light import CellGrid
 
-#: Narrow cones for what is near, at most: they start spread over a cell, and more of them changed no error (docs/extinction.md).
+#: Narrow cones for what is near, at most: they start spread over a cell, and more of them changed no error
+#: (docs/extinction.md).
 NEAR_CONES = 10
 _GOLDEN_ANGLE = math.pi * (3 - math.sqrt(5))
 
@@ -116,7 +117,8 @@ def _made(
     """Return a lamp whose cone is taken apart into so many narrow ones."""
     zero = (0.0, 0.0, 0.0)
     uniforms = {
-        "u_shines": zero, "u_beam": zero, "u_beam_edge": (1.0, -1.0), "u_reach": 0.0, "u_radius": 0.0, **cones(count), **given,
+        "u_shines": zero, "u_beam": zero, "u_beam_edge": (1.0, -1.0), "u_reach": 0.0, "u_radius": 0.0,
+        **cones(count), **given,
     }  # fmt: skip
     key = tuple(
         (name, value.tobytes() if isinstance(value, np.ndarray) else value)
