@@ -120,3 +120,11 @@ def test_the_material_that_is_seen_is_found() -> None:
     assert veil.value == pytest.approx(0.3, abs=0.02)
     assert material_under(scene, 0.95, 0.95, 1.0) is None
     assert material_under(Scene(), 0, 0, 1.0) is None
+
+
+def test_a_function_of_the_gradient_too_tells_its_opacity(scene: Scene) -> None:
+    edge = TransferFunction(regions=(Region(value=(0.05, 0.95), gradient=(0.2, 2.0), opacity=1.0),))
+    found = material_under(scene.with_(transfer=edge), 0, 0, 1.0)
+    assert found is not None
+    assert np.linalg.norm(np.asarray(found.point) - CENTRE) == pytest.approx(RADIUS, abs=1.0)
+    assert 0.3 < found.opacity <= 1, "the skin is what is seen"

@@ -301,7 +301,7 @@ def test_hounsfield_values_are_named_also_when_stored_without_their_intercept(
     window.panel.setCurrentIndex(1)
     plot = window.material_page.transfer.plot
     assert plot.zero == 1024
-    assert plot._told(1024 + 50, 0.25) == "50 HU   25 %   muscle"
+    assert plot.told(1024 + 50, 0.25) == "50 HU   25 %   muscle"
     plot.select(0)
     box = window.material_page.transfer.value
     assert box.suffix() == " HU"

@@ -171,6 +171,7 @@ class MainWindow(QMainWindow):
         self.view_page.scale_bar_chosen.connect(self.viewport.set_scale_bar)
         self.view_page.frames_chosen.connect(self.driver.set_frames)
         self.viewport.pick_tool.picked.changed.connect(self._show_material)
+        self.viewport.pick_tool.words = self.material_page.transfer.plot.told
         self.viewport.clips.added.connect(lambda: self.strip.choose("clip"))
         self.light_page.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
         self.light_page.own_rigs.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))

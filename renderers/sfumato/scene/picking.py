@@ -60,7 +60,7 @@ class Found:
     value : float
         Median of the values that are seen, weighted by how much of the picture they make; the volume's unit.
     opacity : float
-        What the transfer function gives this value, per unit distance; 0 to 1.
+        What the transfer function gives this value (and the gradient at the point), per unit distance; 0 to 1.
     """
 
     point: Vec3
@@ -78,8 +78,12 @@ def material_under(scene: Scene, x: float, y: float, aspect: float) -> Found | N
     order = np.argsort(values)
     value = float(values[order[_half_of(seen[order])]])
     point = points[_half_of(seen)]
-    opacity = float(scene.transfer.evaluate(np.array([value]))[0, 3]) if not scene.transfer.regions else 0.0
-    return Found((float(point[0]), float(point[1]), float(point[2])), value, opacity)
+    if scene.transfer.regions:
+        steepness = np.linalg.norm(value_gradient(scene, point[None]), axis=1)
+        opacity = scene.transfer.evaluate_2d(np.array([value]), steepness)[0, 3]
+    else:
+        opacity = scene.transfer.evaluate(np.array([value]))[0, 3]
+    return Found((float(point[0]), float(point[1]), float(point[2])), value, float(opacity))
 
 
 def _half_of(weights: np.ndarray) -> int:

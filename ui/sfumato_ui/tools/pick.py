@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from qtpy.QtCore import QObject, Qt, Signal
 from qtpy.QtGui import QPainter
 
 from sfumato import Volume
 from sfumato.scene.picking import Found, material_under
-from sfumato.scene.presets.values import hounsfield_zero
 
 from ..editing import Editor
-from ..transfer_editor import told
 from .handles import Handle, HandleTool
 from .view import PictureView, Place
 
@@ -36,14 +36,17 @@ class PickTool(HandleTool):
         self._editor = editor
         self._found: Found | None = None
         self._volume: Volume | None = None
-        self._zero: float | None = None
         self.picked = Picked()
+        #: Value and opacity in words; the window lets the function's plot say them, so that both say the same.
+        self.words: Callable[[float, float], str] = lambda value, opacity: f"{value:g}"
 
     def handles(self, view: PictureView) -> list[Handle]:
         """Return the place at which a material was found, with what is known of it."""
         found = self._current
         at = view.place(np.asarray(found.point)) if found is not None else None
-        return [Handle("material", self._words(found), at, None, "round")] if found is not None and at else []
+        if found is None or at is None:
+            return []
+        return [Handle("material", self.words(found.value, found.opacity), at, None, "round")]
 
     @property
     def _current(self) -> Found | None:
@@ -51,10 +54,6 @@ class PickTool(HandleTool):
         if self._volume is not self._editor.scene.volume:
             self._found = None
         return self._found
-
-    def _words(self, found: Found) -> str:
-        whole = self._volume is not None and self._volume.data.dtype.kind in "ui"
-        return told(found.value, found.opacity, self._zero, 0 if whole else 3)
 
     def press(self, view: PictureView, at: Place) -> str:
         """Find the material under the pointer; where there is none the subject is turned."""
@@ -75,9 +74,7 @@ class PickTool(HandleTool):
 
     def _find(self, view: PictureView, at: Place) -> None:
         scene = self._editor.scene
-        if scene.volume is not self._volume:
-            self._volume = scene.volume
-            self._zero = hounsfield_zero(scene.volume) if scene.volume is not None else None
+        self._volume = scene.volume
         self._found = material_under(scene, *view.fractions(at), view.width / view.height)
         if self._found is not None:
             self.picked.changed.emit(self._found)

@@ -6,7 +6,6 @@ drawn by QPainter rather than by pyqtgraph: the curve carries the tissue's colou
 a move costs a few milliseconds.
 """
 
-from .canvas import told
 from .editor import TransferEditor
 
-__all__ = ["TransferEditor", "told"]
+__all__ = ["TransferEditor"]

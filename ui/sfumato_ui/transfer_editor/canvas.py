@@ -26,15 +26,6 @@ HIT = 12.0
 CLOSEST = 1 / 400
 
 
-def told(value: float, opacity: float, zero: float | None, decimals: int) -> str:
-    """Return a value of the volume, its opacity and the usual tissue in words; `zero` is the value of 0 HU, if any."""
-    shown = value - (zero or 0.0)
-    unit = " HU" if zero is not None else ""
-    words = [f"{painting.text_of(shown, decimals)}{unit}", f"{100 * opacity:.3g} %"]
-    name = tissue.tissue_at(shown) if zero is not None else ""
-    return "   ".join([*words, name] if name else words)
-
-
 class TransferCanvas(QWidget):
     """Shows the points of the scene's function; which one is selected is its own affair."""
 
@@ -147,12 +138,15 @@ class TransferCanvas(QWidget):
         if transfer is None or index < 0:
             self.setAccessibleDescription("No point is selected")
             return
-        text = self._told(transfer.points[index].value, transfer.points[index].opacity)
+        text = self.told(transfer.points[index].value, transfer.points[index].opacity)
         self.setAccessibleDescription(f"Point {index + 1} of {len(transfer.points)}: {text}")
 
-    def _told(self, value: float, opacity: float) -> str:
+    def told(self, value: float, opacity: float) -> str:
         """Return value, opacity and the usual tissue in words."""
-        return told(value, opacity, self.zero, self.decimals)
+        shown = value - (self.zero or 0.0)
+        words = [f"{painting.text_of(shown, self.decimals)} {self.unit}".strip(), f"{100 * opacity:.3g} %"]
+        name = tissue.tissue_at(shown) if self.zero is not None else ""
+        return "   ".join([*words, name] if name else words)
 
     # -- view -------------------------------------------------------------------------------------
     def zoom(self, factor: float, about: float) -> None:
@@ -275,4 +269,4 @@ class TransferCanvas(QWidget):
             point = transfer_edit.point_at(transfer, scale.value(self._hover.x()))
         else:
             return
-        painting.draw_readout(painter, areas, self._told(point.value, point.opacity), current_theme())
+        painting.draw_readout(painter, areas, self.told(point.value, point.opacity), current_theme())
