@@ -80,11 +80,11 @@ int dominant(vec3 along) {
     return steep.x >= max(steep.y, steep.z) ? 0 : steep.y >= steep.z ? 1 : 2;
 }
 
-// Light that comes through a cone from a place, in cells, along a unit vector, as far as `end` mm: of the layers along an axis
-// those from `begin` to `stop` layers from the place; both are where layers meet. It starts that far beside the place,
-// in cells: boxes are whole cells, and cones that all start alike would round theirs alike, which leaves steps in the
-// shadows of small lamps.
-float through(vec3 place, int axis, vec3 along, float tangent, float end, vec2 beside, float begin, float stop) {
+#if PART != 2
+// Light that comes through a cone from a place, in cells, along a unit vector, as far as `end` mm: from `begin` layers along an
+// axis on, where layers meet. It starts that far beside the place, in cells: boxes are whole cells, and cones that all start
+// alike would round theirs alike, which leaves steps in the shadows of small lamps.
+float through(vec3 place, int axis, vec3 along, float tangent, float end, vec2 beside, float begin) {
     vec3 edge = turned(u_edge_mm, axis), way = turned(along, axis), at = turned(place, axis);
     ivec3 cells = turned(u_cells, axis);
     int sign_of = way.x > 0.0 ? 1 : -1;
@@ -97,10 +97,10 @@ float through(vec3 place, int axis, vec3 along, float tangent, float end, vec2 b
     float from = begin, width = u_first + u_growth * (begin - 0.5);
     Passing light = Passing(1.0, 0.0, 1.0);
     for (int i = 0; i < MOST && light_of(light) > DARK; ++i) {
-        if (from >= min(last, stop)) break;
+        if (from >= last) break;
         // A box lies straight: along a slanting way a section is not longer than the cone stays in it.
         float wide = 2.0 * tangent * (from + 0.5 + 0.5 * width) * length_mm / max(edge.y, edge.z);
-        float most = min(min(width, last - from), min(stop - from, (wide + DRIFT) / max(slant, 1e-3)));
+        float most = min(min(width, last - from), (wide + DRIFT) / max(slant, 1e-3));
         float count = max(floor(most + 0.5), 1.0), to = from + count;
         // The section's layers, from low to below high, as far as they lie in the volume.
         int near_plane = int(at.x + float(sign_of) * from + 0.5), far_plane = int(at.x + float(sign_of) * to + 0.5);
@@ -125,10 +125,10 @@ float through(vec3 place, int axis, vec3 along, float tangent, float end, vec2 b
     return light_of(light);
 }
 
-#if PART == 2
-// The same through what is near, from the place itself: narrow cones are narrower than a cell there, so that the cell which a
-// cone's axis meets in each layer is its box.
-float through_near(vec3 place, int axis, vec3 along, float end, vec2 beside, float stop) {
+#else
+// The same through what is near, from the place itself to where layers meet, `stop` layers from it: narrow cones are narrower
+// than a cell there, so that the cell which a cone's axis meets in each layer is its box.
+float through(vec3 place, int axis, vec3 along, float tangent, float end, vec2 beside, float stop) {
     vec3 edge = turned(u_edge_mm, axis), way = turned(along, axis), at = turned(place, axis);
     float steepness = max(abs(way.x), 1e-3), length_mm = edge.x / steepness, last = end / length_mm;
     vec3 step_across = vec3(sign(way.x), way.yz / steepness * edge.x / edge.yz);
@@ -141,9 +141,6 @@ float through_near(vec3 place, int axis, vec3 along, float end, vec2 beside, flo
     }
     return light_of(light);
 }
-#define THROUGH(place, axis, along, tangent, end, beside, begin, stop) through_near(place, axis, along, end, beside, stop)
-#else
-#define THROUGH through
 #endif
 
 // Two unit vectors across a third (Duff et al. 2017).
@@ -159,9 +156,9 @@ vec4 way_to_lamp(vec3 p) {
     return vec4(u_lamp.w > 0.0 ? axis / away : axis, away);
 }
 
-// Share of the light of all narrow cones that comes from a place, in cells, from `begin` to `stop` layers along an axis (each
-// cone's own if it is < 0); times what a lamp that shines to one side sends that way, which is all that `open` holds.
-float all_through(vec3 place, vec4 way, int axis, float begin, float stop, out float open) {
+// Share of the light of all narrow cones that comes from a place, in cells, on one side of a bound, so many layers along an axis
+// (each cone's own if it is < 0): beyond it what is far, up to it what is near; times what a lamp that shines to one side sends that way, which is all that `open` holds.
+float all_through(vec3 place, vec4 way, int axis, float bound, out float open) {
     float sum = 0.0;
 #if POINTS
     vec3 p = place * u_edge_mm;
@@ -176,7 +173,7 @@ float all_through(vec3 place, vec4 way, int axis, float begin, float stop, out f
         // A rectangle seen from the side is narrow, and what lies behind it is not in the way.
         float tangent = u_tangent >= 0.0 ? u_tangent : u_part * max(weight, 0.1) / distance_mm;
         int its = axis < 0 ? dominant(along) : axis;
-        sum += weight / float(CONES) * THROUGH(place, its, along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k], begin, stop);
+        sum += weight / float(CONES) * through(place, its, along, tangent, distance_mm, ACROSS_A_CELL * u_disc[k], bound);
     }
 #else
     open = 1.0;
@@ -185,7 +182,7 @@ float all_through(vec3 place, vec4 way, int axis, float begin, float stop, out f
     for (int k = 0; k < CONES; ++k) {
         vec3 along = normalize(way.xyz + sides * (u_disc[k] * tangent));
         int its = axis < 0 ? dominant(along) : axis;
-        sum += THROUGH(place, its, along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], begin, stop) / float(CONES);
+        sum += through(place, its, along, tangent * u_part, way.w, ACROSS_A_CELL * u_disc[k], bound) / float(CONES);
     }
 #endif
     return sum;
@@ -207,7 +204,7 @@ float past_plane(vec3 place, vec3 middle, vec4 way, int axis, float forward, out
     float stop = float(u_split) - to_place.x * sign(forward);
     vec3 at_far = middle + turned_back(vec3(0.0, to_place.yz - slope.yz * to_place.x), axis);
     // All narrow cones: one wide one's boxes would be rounded alike in all cells, and light jump where they turn over.
-    return all_through(place, way, axis, 0.5, stop, open) * textureLod(u_far, at_far / vec3(u_cells), 0.0).r;
+    return all_through(place, way, axis, stop, open) * textureLod(u_far, at_far / vec3(u_cells), 0.0).r;
 }
 #endif
 
@@ -219,7 +216,7 @@ void main() {
     vec3 place = vec3(2 * cell + 1);
     vec4 matter = box_sum(max(2 * cell - u_around, 0), min(2 * cell + 2 + u_around, u_cells));
     if (matter.r + matter.g == 0.0) return;
-    float open, sum = all_through(place, way_to_lamp(place * u_edge_mm), -1, float(u_split), 1e9, open);
+    float open, sum = all_through(place, way_to_lamp(place * u_edge_mm), -1, float(u_split), open);
     o_light = vec2(open > 0.0 ? sum / open : 1.0);
 #else
     o_light = vec2(0.0);
@@ -247,7 +244,7 @@ void main() {
         sum += (k == 0 ? 1.0 - beside : beside) * past_plane(place, middle, way, its, main_way[its], open);
     }
 #else
-    float open, sum = all_through(place, way, -1, 0.5, 1e9, open);
+    float open, sum = all_through(place, way, -1, 0.5, open);
 #endif
     o_light = openness * vec2(arriving * max(sum, u_unshadowed * open), 1.0);
 #endif
