@@ -112,7 +112,7 @@ def figure_8() -> Figure:
 def figure_9() -> Figure:
     """Look at a skull."""
     transfer = TransferFunction.from_points(
-        [(150, BONE, 0.0), (420, BONE, 0.25), (800, BONE, 0.7), (1500, (0.66, 0.61, 0.50), 0.9)]
+        [(200, BONE, 0.0), (500, BONE, 0.6), (800, BONE, 0.9), (1500, (0.66, 0.61, 0.50), 0.97)]
     )
     volume = load("skull")
     skull = still_local(
@@ -125,7 +125,7 @@ def figure_9() -> Figure:
         "without gradients.",
         panels(
             (phong(skull, "raycast-phong"), "diffuse"),
-            (local(skull, directions=32, radius=_radius(skull), brightness=BRIGHTNESS), "local occlusion"),
+            (local(skull, directions=64, radius=2 * _radius(skull), brightness=BRIGHTNESS), "local occlusion"),
         ),
         (340, 380),
         PAPER,
