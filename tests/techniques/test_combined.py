@@ -11,6 +11,7 @@ import pytest
 import sfumato
 from sfumato import Camera, ClipPlane, Light, Renderer, Scene, SceneError, TransferFunction, Volume
 from sfumato.scene import Geometry, Lines, Surface
+from sfumato.techniques.combined.surfaces import SurfacePainter
 from sfumato.techniques.footprint import kernel_moments
 from sfumato.techniques.light_volume import LightSweeper
 
@@ -349,6 +350,43 @@ def test_only_what_moved_is_swept(monkeypatch: pytest.MonkeyPatch) -> None:
     assert draw(scene.with_(**{"lights.0.tilt": 40})) == 1
     kept = [item for item in renderer.gpu_objects() if item.name.startswith(("geometry", "shadow casters"))]
     assert kept, "buffers are listed"
+    renderer.close()
+
+
+def test_surfaces_are_drawn_again_only_where_they_look_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = stage(tube(), plate(22.0, 6.0))
+    drawn: list[int] = []
+    piece = SurfacePainter._piece
+
+    def counted(self: SurfacePainter, target: Any, program: Any, mesh: Any, first: int) -> None:
+        drawn.append(first)
+        piece(self, target, program, mesh, first)
+
+    monkeypatch.setattr(SurfacePainter, "_piece", counted)
+    plane = ClipPlane((1.0, 0.0, 0.0), (EDGE / 2,) * 3)
+    changes: list[tuple[dict[str, Any], int]] = [
+        ({}, 2), ({"lights.0.tilt": 50.0}, 0), ({"technique.vicinity": 0.5}, 0), ({"camera.parallel_scale": 12.0}, 2),
+        ({"geometry.0.color": (1.0, 0.0, 0.0)}, 2), ({"geometry.1.visible": False}, 1), ({"clip": (plane,)}, 1),
+        ({"geometry.0.clipped": False}, 1), ({"clip": ()}, 0),
+    ]  # fmt: skip
+    renderer = Renderer()
+
+    def draw(scene: Scene) -> np.ndarray:
+        drawn.clear()
+        job = renderer.begin(scene, (SIDE, SIDE))
+        try:
+            for _ in job.add_frame():
+                pass
+            return job.linear()
+        finally:
+            job.release()
+
+    for changed, pieces in changes:
+        scene = scene.with_(changed)
+        picture = draw(scene)
+        assert len(drawn) == pieces, changed
+        renderer.painter(scene).surfaces.forget()  # type: ignore[attr-defined]
+        np.testing.assert_array_equal(picture, draw(scene), str(changed))
     renderer.close()
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 import sfumato
 from sfumato.renderer import FULL, Quality
+from sfumato.techniques.combined.passes import CombinedPainter
 
 from .contender import Unavailable
 from .setting import Setting
@@ -114,6 +115,17 @@ class MovingLight(Ours):
         return self._scene.with_(
             {path: start + turn for path, start in zip(self._paths, self._starts, strict=True)}
         )
+
+
+class Refined(Ours):
+    """Geometry in a picture at rest: light is kept, surfaces are drawn anew, as their jitter is another each frame."""
+
+    def draw(self) -> None:
+        """Draw a frame whose surfaces are not there yet."""
+        painter = self._renderer.painter(self._scene)
+        assert isinstance(painter, CombinedPainter)
+        painter.surfaces.forget()
+        super().draw()
 
 
 class Retouched(Ours):

@@ -13,7 +13,7 @@ from sfumato.techniques.local_occlusion.passes import LEAST
 
 from .contender import Contender
 from .extinction import Building, Neighbourhood
-from .ours import SWING, MovingLight, Ours, Retouched
+from .ours import SWING, MovingLight, Ours, Refined, Retouched
 from .setting import Setting
 from .tubes import TRIANGLES, tubes
 
@@ -144,8 +144,11 @@ def _tubes(triangles: int, *, moving: bool) -> Callable[[Stage, Setting], Conten
     def make(stage: Stage, setting: Setting) -> Contender:
         changes: dict[str, Any] = {"geometry": (tubes(triangles),)}
         if moving:
-            return MovingLight(stage.renderer, setting, "combined", "rotation", 1, changes=changes)
-        return Ours(stage.renderer, setting, "combined", changes=changes, settling=1)
+            # The camera rests: once drawn, the surfaces stay.
+            return MovingLight(
+                stage.renderer, setting, "combined", "rotation", 1, changes=changes, settling=1
+            )
+        return Refined(stage.renderer, setting, "combined", changes=changes, settling=1)
 
     return make
 

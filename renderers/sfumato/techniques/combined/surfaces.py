@@ -1,8 +1,8 @@
-"""The surfaces' picture (the paper's G-buffer), rasterised once a frame; wider than the frame."""
+"""The surfaces' picture (the paper's G-buffer), rasterised once for each view of them; wider than the frame."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ...scene.vectors import box_corners
 from ..frame import Frame
 from ..marcher import near_depth
 from .meshes import LAYOUT, MeshBuffers, Shown
-from .surfels import kept_uniforms
+from .surfels import cut_key, kept_uniforms
 
 #: Indices that are drawn between two looks at whether a newer scene is there.
 PIECE = 3 << 19
@@ -27,12 +27,21 @@ class SurfacePainter:
         self.device = device
         self._programs = Variants(device, _FOLDER + "surface.frag.glsl", _FOLDER + "surface.vert.glsl")
         self.target: SurfaceTarget | None = None
+        #: What the target shows, whole; None while it is drawn.
+        self._shown: Hashable = None
 
     def draw(
         self, frame: Frame, shown: tuple[Shown, ...], meshes: tuple[MeshBuffers, ...], margin: int
     ) -> Iterator[float]:
-        """Draw what is shown, with `margin` pixels more on each side, yielding after each bounded piece."""
+        """Draw what is shown, with `margin` pixels more on each side, yielding after each bounded piece.
+
+        What is there already stays: a lamp that moves, or another transfer function, changes no surface.
+        """
         target = self._target_of((frame.size[0] + 2 * margin, frame.size[1] + 2 * margin))
+        wanted = _key(frame, shown, meshes, margin)
+        if wanted == self._shown:
+            return
+        self.forget()
         target.clear()
         uniforms = _camera(frame, meshes, margin)
         for item, mesh in zip(shown, meshes, strict=True):
@@ -44,6 +53,11 @@ class SurfacePainter:
             for first in range(0, mesh.count, PIECE):
                 self._piece(target, program, mesh, first)
                 yield (first + PIECE) / mesh.count
+        self._shown = wanted
+
+    def forget(self) -> None:
+        """Draw anew next time, whatever is there."""
+        self._shown = None
 
     def _piece(self, target: SurfaceTarget, program: Program, mesh: MeshBuffers, first: int) -> None:
         target.begin()
@@ -71,6 +85,16 @@ class SurfacePainter:
         if self.target is not None:
             self.target.release()
         self.target = None
+        self.forget()
+
+
+def _key(
+    frame: Frame, shown: tuple[Shown, ...], meshes: tuple[MeshBuffers, ...], margin: int
+) -> Hashable:
+    """Return what the picture of surfaces depends on."""
+    things = tuple((item.geometry.mesh_key, item.drawn is item.mesh, cut_key(frame, item)) for item in shown)
+    view = frame.camera, frame.whole_size, frame.size, frame.corner, tuple(frame.pixel_jitter), margin
+    return view, things, depth_range(frame, meshes)
 
 
 def depth_range(frame: Frame, meshes: tuple[MeshBuffers, ...]) -> tuple[float, float]:
