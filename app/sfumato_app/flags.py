@@ -111,6 +111,7 @@ def declared_parameters() -> dict[str, _Declared]:
         "bits",
         "scale_bar",
         "color_bar",
+        "orientation_cube",
         "output",
         "linear",
         "auto_exposure",

@@ -46,6 +46,10 @@ class PrintFlags:
         bool,
         Parameter(negative="", help="Draw the colour bars of tracts and meshes.", group=PRINT),
     ] = False
+    orientation_cube: Annotated[
+        bool,
+        Parameter(negative="", help="Draw a cube that tells the patient's sides.", group=PRINT),
+    ] = False
 
     def spec(self) -> PictureSpec:
         """Return the picture file.
@@ -58,24 +62,22 @@ class PrintFlags:
             If a value is not possible.
         """
         bits = 8 if self.bits is None else self.bits
+        over = {
+            "scale_bar": self.scale_bar, "color_bars": self.color_bar, "orientation_cube": self.orientation_cube
+        }  # fmt: skip
         if self.mm is None:
-            return PictureSpec(
-                parse_size(self.size or DEFAULT_SIZE), bits, dpi=self.dpi, scale_bar=self.scale_bar,
-                color_bars=self.color_bar,
-            )  # fmt: skip
+            return PictureSpec(parse_size(self.size or DEFAULT_SIZE), bits, dpi=self.dpi, **over)
         if self.size is not None:
             raise UsageError("--size and --mm: one of them is enough")
         dpi = self.dpi or DPI
-        return PictureSpec.printed(
-            parse_millimetres(self.mm), dpi, bits=bits, scale_bar=self.scale_bar, color_bars=self.color_bar
-        )
+        return PictureSpec.printed(parse_millimetres(self.mm), dpi, bits=bits, **over)
 
     @property
     def only_for_print(self) -> list[str]:
         """The flags given that linear pictures do not know."""
         given = {
             "--dpi": self.dpi, "--bits": self.bits, "--scale-bar": self.scale_bar or None,
-            "--color-bar": self.color_bar or None,
+            "--color-bar": self.color_bar or None, "--orientation-cube": self.orientation_cube or None,
         }  # fmt: skip
         return [name for name, value in given.items() if value is not None]
 

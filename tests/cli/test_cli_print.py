@@ -48,6 +48,18 @@ def test_scale_bar(run, ball):
     assert "orthographic" in run("render", ball, "-o", "c.png", "--scale-bar", *flags).failed_with(1)
 
 
+def test_orientation_cube(run, ball):
+    flags = ("--size", "200x150", *FAST)
+    assert run("render", ball, "-o", "a.png", *flags).status == 0
+    assert run("render", ball, "-o", "b.png", "--orientation-cube", *flags).status == 0
+    with Image.open("a.png") as a, Image.open("b.png") as b:
+        changed = np.abs(np.asarray(a).astype(int) - np.asarray(b)).max(axis=2) > 0
+    y, x = np.nonzero(changed)
+    assert max(x.max(), y.max()) < 80
+    assert min(x.min(), y.min()) > 2
+    assert "--orientation-cube" in run("render", ball, "-o", "c.npy", "--orientation-cube", "--linear").failed_with(2)
+
+
 def test_wrong_use(run, ball):
     assert "one of them" in run("render", ball, "--mm", "5x5", "--size", "5x5").failed_with(2)
     assert "85x60" in run("render", ball, "--mm", "5").failed_with(2)

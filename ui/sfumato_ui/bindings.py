@@ -65,6 +65,8 @@ _FIXED = (
     Command("exposure", "Automatic exposure", "View", ("X",)),
     Command("audit", "Shadow audit: mark what shadows hide", "Light", ("A",)),
     Command("fit", "See the whole subject", "View", ("Home",)),
+    Command("turntable", "Turntable: let the subject turn", "View", ("T",)),
+    Command("cube", "Orientation cube", "View", ("O",)),
     Command("bookmark", "Keep this view", "View", ("Ctrl+B",)),
     Command("bookmark-next", "Next kept view", "View", ("N",)),
 )

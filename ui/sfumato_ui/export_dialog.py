@@ -23,6 +23,7 @@ from sfumato.export.picture import MAX_PIXELS, MAX_SIDE, PictureSpec
 
 from .export_size import LEAST_SIDE, OWN, PRESETS, ExportSize, duration_words, memory_words
 from .generated import ChoiceBox
+from .orientation import cube_wanted
 from .settings import settings
 
 #: Jittered frames by quality.
@@ -98,6 +99,9 @@ class ExportDialog(QDialog):
         self.quality.setToolTip("Draft, normal, fine: 2, 8 or 32 pictures are averaged")
         self.transparent = QCheckBox("Transparent background")
         self.transparent.setToolTip("Leave the background out")
+        self.cube = QCheckBox("Orientation cube")
+        self.cube.setToolTip("The patient's sides on a cube, upper left")
+        self.cube.setChecked(cube_wanted())
         self.color_bars = QCheckBox("Colour bar")
         self.color_bars.setToolTip("The values behind the colours of tracts and meshes, lower left")
         self.scale_bar = QCheckBox("Scale bar")
@@ -121,6 +125,7 @@ class ExportDialog(QDialog):
         form.addRow("Quality", self.quality)
         form.addRow("", self.transparent)
         form.addRow("", self.scale_bar)
+        form.addRow("", self.cube)
         if self.color_bars.isChecked():
             form.addRow("", self.color_bars)
         else:
@@ -207,6 +212,7 @@ class ExportDialog(QDialog):
             frames=QUALITIES[self.quality.currentText()],
             scale_bar=self.scale_bar.isChecked(),
             color_bars=self.color_bars.isChecked(),
+            orientation_cube=self.cube.isChecked(),
         )
 
     @property

@@ -35,6 +35,7 @@ from .clip_planes import ClipPlanes
 from .dial import MOVE
 from .editing import Editor
 from .jobs import Picture
+from .orientation import OrientationCube
 from .settings import settings
 from .shadow_audit import words_of
 from .shadow_floor import badge_of
@@ -63,6 +64,8 @@ class Viewport(QWidget):
     shown = Signal(object)
     #: The user moved the lamp in the picture (for the hint).
     lamp_moved = Signal()
+    #: The user pressed on a face of the orientation cube: the standard view that looks at it.
+    side_chosen = Signal(str)
 
     def __init__(self, editor: Editor) -> None:
         super().__init__()
@@ -87,6 +90,7 @@ class Viewport(QWidget):
         self.hint = ""
         #: Whether an orthographic picture has a bar of true length.
         self.scale_bar = bool(settings().value(SCALE_BAR, False, type=bool))
+        self.cube = OrientationCube()
         #: Controls that lie over the picture; Tab reaches them after it.
         self.controls_over: list[QWidget] = []
         self.empty_text = "Drop a volume or a folder here, or press Ctrl+O"
@@ -146,6 +150,9 @@ class Viewport(QWidget):
         """Show by the cursor what is under it."""
         tool, view = self.tools.get(self._tool), self.view
         shape = Qt.CursorShape.OpenHandCursor
+        if at is not None and view is not None and self.cube.face(view.camera, at):
+            self.setCursor(Qt.CursorShape.PointingHandCursor)
+            return
         if tool is not None and view is not None:
             before = tool.hovered
             shape = tool.hover(view, (at.x(), at.y()) if at is not None else None)
@@ -188,6 +195,11 @@ class Viewport(QWidget):
         settings().setValue(SCALE_BAR, on)
         self.update()
 
+    def set_cube(self, on: bool) -> None:
+        """Show the orientation cube, and remember it."""
+        self.cube.set_on(on)
+        self.update()
+
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint the picture on neutral grey, then letters, hint and focus."""
         painter = QPainter(self)
@@ -209,6 +221,9 @@ class Viewport(QWidget):
         if self.scale_bar and self._picture is not None and scene.camera is not None:
             lift = self.fontMetrics().height() + 22 if self.hint else 0
             overlay.draw_scale_bar(painter, self.rect(), scene.camera, lift)
+        if self.cube.on and is_open(scene) and scene.camera is not None:
+            known = scene.volume is None or scene.volume.info.orientation_known
+            self.cube.paint(painter, scene.camera, known, self.devicePixelRatioF())
         self._paint_tool(painter)
         if self.hint and self._tool == "orbit" and scene.volume is not None:
             overlay.draw_hint(painter, self.rect(), self.hint)
@@ -289,7 +304,12 @@ class Viewport(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Begin a drag."""
-        if self._mode or self._editor.scene.camera is None:
+        camera = self._editor.scene.camera
+        if self._mode or camera is None:
+            return
+        plain = event.button() == Qt.MouseButton.LeftButton and not event.modifiers()
+        if plain and (side := self.cube.face(camera, event.position())):
+            self.side_chosen.emit(side)
             return
         self._mode = self._mode_for(event)
         self._last = event.position()
@@ -321,6 +341,8 @@ class Viewport(QWidget):
         """Re-centre on the surface under the cursor; on a handle, a double-click is a click."""
         tool, view, at = self.tools.get(self._tool), self.view, event.position()
         plain = event.button() == Qt.MouseButton.LeftButton and not event.modifiers()
+        if view is not None and self.cube.face(view.camera, at):
+            return
         on_handle = tool is not None and view is not None and tool.hit(view, (at.x(), at.y())) is not None
         if not plain or view is None or on_handle:
             self.mousePressEvent(event)

@@ -45,6 +45,7 @@ from .tab_order import set_tab_order
 from .theme import apply_theme
 from .thumbnails import Thumbnails
 from .trouble import Trouble
+from .turntable import Turntable
 from .viewport import Viewport
 from .vtk_view.layout import VtkLayout
 from .window_commands import window_commands
@@ -89,6 +90,7 @@ class MainWindow(QMainWindow):
         self.material_page = MaterialPage(self.editor)
         self.material_page.use_thumbnails(self.thumbnails)
         self.view_page = ViewPage(self.editor, self.viewport.clips)
+        self.turntable = Turntable(self.editor, self)
         self.views = QSplitter(Qt.Orientation.Horizontal)
         self.vtk = VtkLayout(self.views, self.editor, self.messages)
         self.autosave = Autosave(self.editor, self.files.identify, self)
@@ -169,6 +171,11 @@ class MainWindow(QMainWindow):
         self.view_page.automatic.toggled.connect(self._set_automatic)
         self.view_page.theme_chosen.connect(self.set_theme)
         self.view_page.scale_bar_chosen.connect(self.viewport.set_scale_bar)
+        self.view_page.turntable.clicked.connect(lambda: self._turn())
+        self.turntable.playing_changed.connect(self.view_page.turntable.setChecked)
+        self.viewport.shown.connect(lambda picture: self.turntable.step())
+        self.view_page.cube_chosen.connect(self.viewport.set_cube)
+        self.viewport.side_chosen.connect(self.turn_to)
         self.view_page.frames_chosen.connect(self.driver.set_frames)
         self.viewport.pick_tool.picked.changed.connect(self._show_material)
         self.viewport.pick_tool.words = self.material_page.transfer.plot.told
@@ -258,6 +265,17 @@ class MainWindow(QMainWindow):
         if camera is not None:
             self.editor.change(f"View from the {view}" if view else "See the whole", camera=camera)
 
+    def turn_to(self, view: str) -> None:
+        """See what is seen from a standard view, as near as it is."""
+        camera = self.editor.scene.camera
+        if camera is not None:
+            self.editor.change(f"View from the {view}", camera=camera_moves.from_side(camera, view))
+
+    def _turn(self) -> None:
+        """Let the turntable play, or end it; its button tells which."""
+        self.turntable.toggle()
+        self.view_page.turntable.setChecked(self.turntable.playing)
+
     def _show_material(self, found: Found) -> None:
         """Show where a material that was picked lies in the function."""
         self.panel.setCurrentWidget(self.material_page)
@@ -337,6 +355,7 @@ class MainWindow(QMainWindow):
         self._closed = True
         settings().setValue("window/geometry", self.saveGeometry())
         self.hide()
+        self.turntable.end()
         self.vtk.close()
         self.driver.stop()
         self.recovery.close()

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
+
+
+class Ink(Protocol):
+    """What is drawn over a picture file."""
+
+    def draw_on(self, rows: np.ndarray, top: int) -> None:
+        """Draw the part that lies in some rows of the picture, of which the first is row ``top``."""
 
 
 def draw_over(
@@ -33,4 +42,4 @@ def draw_over(
     part[..., 3:] = np.rint(alpha * full)
 
 
-__all__ = ["draw_over"]
+__all__ = ["Ink", "draw_over"]

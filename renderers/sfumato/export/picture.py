@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import os
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +17,8 @@ from ..scene import Camera, Scene
 from .atomic import replacing
 from .color_bars import BarsInk
 from .encode import encode16
+from .ink import Ink
+from .orientation_cube import CubeInk
 from .png import scene_text
 from .scale_bar import ScaleBar
 from .streams import PictureStream, PngStream, TiffStream
@@ -54,6 +56,8 @@ class PictureSpec:
         Draw a scale bar; needs an orthographic view.
     color_bars : bool
         Draw the colour bars of geometry that is coloured by a scalar, if there is any.
+    orientation_cube : bool
+        Draw a cube that tells the patient's sides, if there is room.
 
     Raises
     ------
@@ -67,6 +71,7 @@ class PictureSpec:
     frames: int | None = None
     scale_bar: bool = False
     color_bars: bool = False
+    orientation_cube: bool = False
 
     def __post_init__(self) -> None:
         width, height = self.size
@@ -172,11 +177,7 @@ def write_picture(
         raise SfumatoError(f"{path}: pictures end in {', '.join(STREAMS)}")
     if scene.camera is None:
         raise SceneError("volume", None, "a scene needs a volume or geometry to be drawn")
-    inks: list[ScaleBar | BarsInk] = []
-    if spec.scale_bar:
-        inks.append(ScaleBar.for_picture(scene.camera, spec.size, spec.dpi))
-    if spec.color_bars and (bars := BarsInk.for_picture(scene, spec.size, spec.dpi)) is not None:
-        inks.append(bars)
+    inks = _inks(scene, scene.camera, spec)
     text = scene_text(carried or scene)
     bands = bands_of(spec.size, tile_side, tile_pixels)
     with replacing(path) as part, open(part, "wb") as file:
@@ -187,13 +188,27 @@ def write_picture(
         os.fsync(file.fileno())
 
 
+def _inks(scene: Scene, camera: Camera, spec: PictureSpec) -> list[Ink]:
+    """Return what is drawn over the picture."""
+    inks: list[Ink] = []
+    if spec.scale_bar:
+        inks.append(ScaleBar.for_picture(camera, spec.size, spec.dpi))
+    if spec.color_bars and (bars := BarsInk.for_picture(scene, spec.size, spec.dpi)) is not None:
+        inks.append(bars)
+    if spec.orientation_cube:
+        known = scene.volume is None or scene.volume.info.orientation_known
+        if (cube := CubeInk.for_picture(camera, spec.size, spec.dpi, known)) is not None:
+            inks.append(cube)
+    return inks
+
+
 def _draw(
     renderer: Renderer,
     scene: Scene,
     spec: PictureSpec,
     bands: tuple[tuple[Tile, ...], ...],
     stream: PictureStream,
-    inks: list[ScaleBar | BarsInk],
+    inks: Sequence[Ink],
     guest: Guest | None,
 ) -> Generator[float, None, None]:
     """Draw band after band into a stream."""

@@ -28,6 +28,7 @@ from ..editing import Editor
 from ..generated import ChoiceBox, ParamControl, bind_slider, labelled, slider_for
 from ..geometry_controls import GeometryControls
 from ..jobs import STILL_SECONDS
+from ..orientation import cube_wanted
 from ..quality import QUALITIES, chosen_quality, remember_quality
 from ..section import Section
 from ..settings import settings
@@ -54,6 +55,8 @@ class ViewPage(Page):
     frames_chosen = Signal(int)
     #: A scale bar is wanted in the picture, or no more.
     scale_bar_chosen = Signal(bool)
+    #: The orientation cube is wanted in the picture, or no more.
+    cube_chosen = Signal(bool)
 
     def __init__(self, editor: Editor, clips: ClipPlanes) -> None:
         super().__init__()
@@ -61,6 +64,13 @@ class ViewPage(Page):
         self.views = self._view_buttons()
         self.parallel = QCheckBox("Orthographic")
         self.parallel.setToolTip("Parallel projection: no foreshortening, lengths can be compared")
+        self.turntable = QPushButton("Turn")
+        self.turntable.setAccessibleName("Turntable")
+        self.turntable.setCheckable(True)
+        self.turntable.setProperty("compact", True)
+        explain(
+            self.turntable, "Let the subject turn, once around in 12 s; the next press or key ends it", "turntable"
+        )
         self.bookmarks = BookmarkButton(editor)
         self.lens = slider_for(fields_of(Camera)["view_angle"])
         self.clip = ClipControls(editor, clips)
@@ -85,6 +95,11 @@ class ViewPage(Page):
         self.tone = ParamControl(known["tone_curve"], editor, "tone_curve")
         self.scale_bar = QCheckBox("Scale bar")
         self.scale_bar.setChecked(bool(settings().value("view/scale_bar", False, type=bool)))
+        self.cube = QCheckBox("Orientation cube")
+        explain(
+            self.cube, "A cube, upper left, whose faces name the patient's sides; a press on one looks at it", "cube"
+        )
+        self.cube.setChecked(cube_wanted())
         # Without clip planes all of it fits into a window of 1280 x 720.
         self.column.setSpacing(4)
         self.add_heading("Camera")
@@ -103,7 +118,7 @@ class ViewPage(Page):
         self.more.add(self.automatic)
         self.more.add(self.white)
         self.more.add(self.tone)
-        self.more.add(self.scale_bar)
+        self.more.add(_side_by_side(self.scale_bar, self.cube))
         self.more.add(self._quality_row())
         self.more.add(self.step)
         self.more.add(self._theme_row())
@@ -133,6 +148,7 @@ class ViewPage(Page):
         column.setSpacing(4)
         layout = QHBoxLayout()
         layout.addWidget(self.parallel, 1)
+        layout.addWidget(self.turntable)
         layout.addWidget(self.bookmarks)
         column.addLayout(layout)
         column.addWidget(self.bookmarks.ask)
@@ -183,6 +199,7 @@ class ViewPage(Page):
         bind_slider(self.exposure, editor, "exposure", "exposure")
         bind_slider(self.step, editor, "step", "sampling")
         self.scale_bar.toggled.connect(self.scale_bar_chosen)
+        self.cube.toggled.connect(self.cube_chosen)
         self.quality.activated.connect(self._choose_quality)
         self.theme.activated.connect(lambda i: self.theme_chosen.emit(self.theme.itemData(i)))
         editor.changed.connect(lambda old, new: self.refresh())
@@ -224,7 +241,7 @@ class ViewPage(Page):
             button.setChecked(color == scene.background)
         self.theme.setCurrentIndex(self.theme.findData(current_theme().name, Qt.ItemDataRole.UserRole))
         camera = scene.camera
-        for widget in (self.views, self.parallel, self.bookmarks, self.lens):
+        for widget in (self.views, self.parallel, self.turntable, self.bookmarks, self.lens):
             widget.setEnabled(camera is not None)
         if camera is not None:
             self.parallel.blockSignals(True)
@@ -239,6 +256,17 @@ class ViewPage(Page):
             if orthographic
             else "Needs an orthographic view: in perspective, what is nearer is larger"
         )
+
+
+def _side_by_side(*boxes: QWidget) -> QWidget:
+    """Return a row of widgets of one width."""
+    row = QWidget()
+    layout = QHBoxLayout(row)
+    layout.setContentsMargins(0, 0, 0, 0)
+    layout.setSpacing(8)
+    for box in boxes:
+        layout.addWidget(box, 1)
+    return row
 
 
 def _beside(slider: LabelledSlider, button: QPushButton) -> QWidget:
