@@ -34,6 +34,8 @@ SCAN = DATA / "tracts_stanford_hardi" / "sub-01_ses-01_dwi_desc-b0_dwi.nii.gz"
 CAROTID = DATA / "carotid_flow" / "carotid.vtk"
 FRAMES = 4
 LAMP = Light(tilt=37, aperture=22, rotation=135)
+#: Intensity of the lamp in pictures without shadows.
+WEAKER = 0.5
 #: All that casts shadows on what, and contact shadows.
 SWITCHES = ("volume_on_volume", "geometry_on_geometry", "geometry_on_volume", "volume_on_geometry")
 
@@ -44,8 +46,12 @@ def _combined(scene: Scene, *, frames: int = FRAMES, **params: Any) -> Scene:
 
 
 def _without_shadows(scene: Scene) -> Scene:
-    """Return a scene shaded by its surfaces alone, as under local lighting."""
-    return _combined(scene, vicinity=0.0, specular=0.3, **dict.fromkeys(SWITCHES, False))
+    """Return a scene shaded by its surfaces alone, as under local lighting.
+
+    What no shadow dims is brighter as a whole: its lamp is weaker, so that nothing burns out.
+    """
+    unshadowed = _combined(scene, vicinity=0.0, specular=0.3, **dict.fromkeys(SWITCHES, False))
+    return unshadowed.with_({f"lights.{k}.intensity": WEAKER for k in range(len(scene.lights))})
 
 
 # -- the mixing pipe -------------------------------------------------------------------------------
