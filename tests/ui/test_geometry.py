@@ -207,6 +207,14 @@ def trk(path, lines):
     return path
 
 
+def bare(path, lines):
+    """Write a TRK as old programs did: 64 bytes of its header, the affine, are zero."""
+    data = bytearray(trk(path.with_suffix(".trk"), lines).read_bytes())
+    data[440:504] = bytes(64)
+    path.with_suffix(".trk").write_bytes(data)
+    return path.with_suffix(".trk")
+
+
 def vtp(path, lines):
     import pyvista
 
@@ -234,8 +242,9 @@ GOOD = [[-4, -4, 4], [-30, -30, 30]]
             "1 line with 1 point that are NaN",
         ),
         (vtp, [GOOD], "does not name its space"),
+        (bare, [GOOD], "has no affine"),
     ],
-    ids=["outside", "another scan", "one point", "NaN", "no space"],
+    ids=["outside", "another scan", "one point", "NaN", "no space", "no affine"],
 )
 def test_what_is_wrong_is_counted_and_the_rest_shown(window, tmp_path, qtbot, make, lines, told):
     path = make(tmp_path / f"odd.{make.__name__}", lines)
