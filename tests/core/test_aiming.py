@@ -153,8 +153,9 @@ SIDE, PART = 512, 7
 AROUND = 25
 #: Cosine of the angle to the sight from which on a lamp can shine: 69 degrees, and a little more.
 SLANT = 0.37
-#: Radius of the ideal speck in voxels: on a slope the shadow of a larger one is long.
-SPECK = 0.6
+#: Radius of the ideal speck in voxels, about a pixel: where light grazes a slope, the shadow of a larger one is long,
+#: and its middle lies beside the place where the ray through the speck's middle ends.
+SPECK = 0.4
 #: Places of the picture from which pairs are drawn.
 PLACES = 2500
 #: Pairs by geometry, and how many of them are traced with and without a speck.
