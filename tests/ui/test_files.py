@@ -167,6 +167,50 @@ def test_saving_the_scene_and_opening_it_again(
     qtbot.waitUntil(lambda: window.editor.scene.lights[0].tilt == 20, timeout=30_000)
 
 
+def test_a_volume_that_has_moved_is_found_or_asked_for(
+    window: MainWindow, hand: Any, qtbot: QtBot, tmp_path: Path
+) -> None:
+    data = window.editor.scene.volume.data
+    for folder in ("scans", "work", "away"):
+        (tmp_path / folder).mkdir()
+    np.save(tmp_path / "scans" / "ball.npy", data)
+    there = tmp_path / "scans" / "ball.npy"
+
+    def found() -> bool:
+        volume = window.editor.scene.volume
+        return volume is not None and volume.info.path == str(there)
+
+    drop(window, there)
+    qtbot.waitUntil(found, timeout=30_000)
+    window.editor.change_light("Move the light", tilt=55.0)
+    scene = tmp_path / "work" / "study.sfumato"
+    assert window.files.save_scene_as(str(scene))
+    key = window.editor.scene.volume.key
+    # Renamed beside where it was: the folder is known from the recent files.
+    there = tmp_path / "scans" / "renamed.npy"
+    (tmp_path / "scans" / "ball.npy").rename(there)
+    drop(window, scene)
+    qtbot.waitUntil(found, timeout=30_000)
+    assert f"found as {there}" in window.messages.text
+    # Nowhere that one would look: the user says where.
+    there.rename(tmp_path / "away" / "b.npy")
+    there = tmp_path / "away" / "b.npy"
+    drop(window, scene)
+    qtbot.waitUntil(lambda: window.messages.kind == "error", timeout=30_000)
+    assert "the scene's volume is not there" in window.messages.text
+    assert "What was open stays open" in window.messages.text
+    find = next(b for b in window.messages.findChildren(QPushButton) if b.text() == "Find it…")
+    qtbot.mouseClick(find, Qt.MouseButton.LeftButton)
+    dialog = dialog_of(window, qtbot, QFileDialog)
+    dialog.selectFile(str(there))
+    accept = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Open)
+    qtbot.mouseClick(accept, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(found, timeout=30_000)
+    assert window.editor.scene.volume.key == key
+    assert window.editor.scene.lights[0].tilt == 55
+    assert "not the volume" not in window.messages.text
+
+
 @pytest.mark.parametrize(("answer", "stays"), [("Cancel", True), ("Discard", False)])
 def test_closing_with_unsaved_work_asks(window: MainWindow, qtbot: QtBot, answer: str, stays: bool) -> None:
     window.editor.change_light("Move the light", tilt=50.0)

@@ -19,7 +19,7 @@ from .editing import Editor
 from .loading import SCENE_SUFFIX, Loader, Wish, geometry_notices
 from .messages import MessageBar
 from .raw_dialog import RawDialog
-from .recent import last_folder, remember
+from .recent import last_folder, recent_folders, remember
 from .series_dialog import SeriesDialog
 from .subject import is_open, name_of, technique_drawing_geometry
 
@@ -57,6 +57,7 @@ class Files(QObject):
         loader.several.connect(self._ask_for_series)
         loader.raw_found.connect(self._ask_for_form)
         loader.reduced.connect(self._on_reduced)
+        loader.volume_missing.connect(self._on_missing)
         loader.failed.connect(self._on_failed)
         loader.cancelled.connect(lambda: self._bar.clear("progress"))
         self._bar.cancelled.connect(self._cancel)
@@ -141,6 +142,7 @@ class Files(QObject):
             self._bar.show_notice("\n".join(notices))
 
     def _begin(self, wish: Wish) -> None:
+        wish = replace(wish, places=tuple(recent_folders()))
         self._wish = wish
         self._bar.show_progress(f"Opening {wish.name}… ", 0.0)
         # At once: a reader's first import may hold the interpreter for half a second.
@@ -177,6 +179,18 @@ class Files(QObject):
     def identify(self) -> tuple[str, str]:
         """Return the scene's file, or nothing, and its name."""
         return self.scene_path, self.name
+
+    def _on_missing(self, wish: Wish, message: str) -> None:
+        """Let the user say where a scene's volume is now."""
+        self._on_failed(message)
+        self._bar.show_error(f"{self._bar.text}", {"Find it…": lambda: self._ask_for_volume(wish)})
+
+    def _ask_for_volume(self, wish: Wish) -> None:
+        dialog = QFileDialog(self._window, f"Where is the volume of {wish.name}?", last_folder())
+        dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
+        dialog.fileSelected.connect(lambda path: self._begin(replace(wish, volume=path)))
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
 
     def _on_failed(self, message: str) -> None:
         if self._wish.slot:  # it is offered again at the next start

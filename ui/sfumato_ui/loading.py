@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,7 +14,7 @@ from qtpy.QtCore import QObject, Signal
 
 import sfumato_samples
 from sfumato import Geometry, Scene, SfumatoError, Tracing, Volume
-from sfumato.export.png import carries_scene, open_png
+from sfumato.export.png import carries_scene, open_png, read_scene_data
 from sfumato.geometry import is_geometry
 from sfumato.geometry.directions import LEAST_ANISOTROPY
 from sfumato.scene.presets import presets_for, suggest_view
@@ -45,12 +46,18 @@ class Wish:
         How to read bare voxels.
     slot : Slot, optional
         The autosaved scene that `path` is.
+    places : tuple of str
+        Folders in which a scene's volume is looked for if it has moved.
+    volume : str
+        Path of a scene's volume, if the user named it; else empty.
     """
 
     path: str
     series: str | None = None
     raw: Any = None
     slot: Any = None
+    places: tuple[str, ...] = ()
+    volume: str = ""
 
     @property
     def name(self) -> str:
@@ -86,6 +93,8 @@ class Loader(QObject):
     several = Signal(str, object)
     #: Bare voxels that nothing describes (path, list of guesses).
     raw_found = Signal(str, object)
+    #: A scene's volume is nowhere to be found (the wish, the message).
+    volume_missing = Signal(object, str)
     failed = Signal(str)
     cancelled = Signal()
 
@@ -144,7 +153,7 @@ class Loader(QObject):
             self.cancelled.emit()
 
     def _open(self, wish: Wish, aspect: float, progress: Any, stop: threading.Event) -> Callable[[], object]:
-        from sfumato.io import NeedsDescription, guess_raw
+        from sfumato.io import MissingVolume, NeedsDescription, guess_raw
 
         found = _several_series(wish.path) if wish.series is None else []
         if len(found) > 1:
@@ -153,6 +162,8 @@ class Loader(QObject):
             scene = read_scene(wish, progress, stop.is_set, aspect)
         except NeedsDescription as error:
             return partial(self.raw_found.emit, error.path, guess_raw(error.path))
+        except MissingVolume as error:
+            return partial(self.volume_missing.emit, wish, one_line(error))
         if not (wish.scene_path or wish.slot):
             scene = with_streamlines(scene, progress, stop.is_set)
         return partial(self.loaded.emit, scene, wish)
@@ -189,18 +200,38 @@ class Loader(QObject):
 
 def read_scene(wish: Wish, progress: Any = None, cancel: Any = None, aspect: float = 1.0) -> Scene:
     """Read a scene file, a picture that carries its scene, or a volume as a new scene that fits the picture."""
-    if wish.scene_path:
-        scene = Scene.open(wish.path)
+    if wish.scene_path or carries_scene(wish.path):
+        scene = _read_scene_file(wish, progress, cancel)
     elif wish.is_sample:
         scene = sfumato_samples.scene(wish.path.removeprefix(SAMPLE))
     elif is_geometry(wish.path):
         return _of_geometry(read_geometry(wish.path, progress, cancel), aspect)
-    elif carries_scene(wish.path):
-        scene = open_png(wish.path)
     else:
         scene = _fitting(_read_volume(wish, progress, cancel), aspect)
     _prepare(scene)
     return scene
+
+
+def _read_scene_file(wish: Wish, progress: Any, cancel: Any) -> Scene:
+    """Read a scene, with the volume that it names or the user did."""
+    opened = Scene.open if wish.scene_path else open_png
+    if not wish.volume:
+        return opened(wish.path, places=wish.places)
+    volume = _read_volume(Wish(wish.volume), progress, cancel)
+    scene = opened(wish.path, volume)
+    if volume.key != _named_key(wish):
+        volume = _noted(volume, "This is not the volume that the scene was made with.")
+        scene = scene.with_(volume=volume)
+    return scene
+
+
+def _named_key(wish: Wish) -> object:
+    """Return the key of the volume that a scene names."""
+    if wish.scene_path:
+        data = json.loads(Path(wish.path).read_text(encoding="utf-8"))
+    else:
+        data = read_scene_data(wish.path)
+    return data["volume"].get("hash")
 
 
 def with_streamlines(scene: Scene, progress: Any = None, cancel: Any = None) -> Scene:

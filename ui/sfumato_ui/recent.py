@@ -45,6 +45,11 @@ def last_folder() -> str:
     return str(settings().value(_FOLDER, "")) or str(Path.home())
 
 
+def recent_folders() -> list[str]:
+    """Return the folders of the recent files, each once: where a volume that has moved may be."""
+    return list(dict.fromkeys(os.path.dirname(path) for path in recent_files()))
+
+
 class RecentMenu(QMenu):
     """Lists the recent files; those that are gone are marked and cannot be chosen."""
 

@@ -9,10 +9,12 @@ A TIFF of ours carries the same text as its description.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import struct
 import zlib
+from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, BinaryIO
@@ -150,13 +152,19 @@ def carries_scene(path: str | os.PathLike[str]) -> bool:
     return suffix == ".png" or (suffix in TIFF_SUFFIXES and is_tiff_of_ours(path))
 
 
-def open_png(path: str | os.PathLike[str], volume: Volume | None = None) -> Scene:
+def open_png(
+    path: str | os.PathLike[str],
+    volume: Volume | None = None,
+    places: Sequence[str | os.PathLike[str]] = (),
+) -> Scene:
     """Return the scene that a picture carries, with its volume, which is looked for beside the picture.
 
     Parameters
     ----------
     volume : Volume, optional
         Use this volume instead of the one that the scene names.
+    places : sequence of path
+        Folders in which a volume that is not beside the picture is looked for, by its content.
 
     Raises
     ------
@@ -167,7 +175,7 @@ def open_png(path: str | os.PathLike[str], volume: Volume | None = None) -> Scen
     """
     data = read_scene_data(path)
     if volume is None and data.get("volume"):
-        volume = _volume_beside(Path(path), data["volume"])
+        volume = _volume_beside(Path(path), data["volume"], places)
     if isinstance(data.get("geometry"), list):
         # As with the volume: only ever names beside the picture.
         folder = Path(path).parent
@@ -178,8 +186,10 @@ def open_png(path: str | os.PathLike[str], volume: Volume | None = None) -> Scen
     return Scene.from_json(data, volume)
 
 
-def _volume_beside(picture: Path, reference: Any) -> Volume:
-    from ..io import load_known
+def _volume_beside(
+    picture: Path, reference: Any, places: Sequence[str | os.PathLike[str]] = ()
+) -> Volume:
+    from ..io import MissingVolume, find_moved, load_known
 
     named, key = (reference.get(k) for k in ("path", "hash")) if isinstance(reference, dict) else (None, None)
     key = key if isinstance(key, str) else None
@@ -193,7 +203,10 @@ def _volume_beside(picture: Path, reference: Any) -> Volume:
     name = _file_name(named)
     place: str | Path = name if name.startswith(SAMPLE) else picture.parent / name
     if isinstance(place, Path) and not place.exists():
-        raise LoadError(
+        if key:
+            with contextlib.suppress(MissingVolume):
+                return find_moved(place, key, [picture.parent, *places])
+        raise MissingVolume(
             picture, f"its volume {name!r} is not beside it", "put it there, or name the volume too"
         )
     return load_known(place, key)
@@ -201,7 +214,7 @@ def _volume_beside(picture: Path, reference: Any) -> Volume:
 
 def _unnamed_beside(picture: Path, key: str) -> Volume:
     """Return the DICOM volume or stack of slices with a key from the picture's folder or a folder beside it."""
-    from ..io import load_known
+    from ..io import MissingVolume, load_known
 
     here = picture.parent
     folders = sorted(p for p in here.iterdir() if p.is_dir())
@@ -211,7 +224,7 @@ def _unnamed_beside(picture: Path, key: str) -> Volume:
                 return load_known(place, key)
             except LoadError:
                 continue
-    raise LoadError(
+    raise MissingVolume(
         picture, "its slices are not beside it", "put the picture beside their folder, or name it too"
     )
 

@@ -30,7 +30,8 @@ from .dicom_header import is_dicom
 from .dicom_series import SeriesInfo
 from .finish import finish
 from .formats import SUPPORTED
-from .known import load_known
+from .known import OtherContent, load_known
+from .moved import MissingVolume, find_moved
 from .raw import NeedsDescription, RawGuess
 from .reading import Cancel, LoadCancelled, Progress, Reading, Source, Task
 
@@ -40,10 +41,13 @@ if TYPE_CHECKING:
 __all__ = [
     "SUPPORTED",
     "LoadCancelled",
+    "MissingVolume",
     "NeedsDescription",
+    "OtherContent",
     "RawGuess",
     "SeriesInfo",
     "describe_raw",
+    "find_moved",
     "find_series",
     "guess_raw",
     "load",

@@ -13,13 +13,26 @@ from ..scene import Volume
 MAX_HALVINGS = 3
 
 
+class OtherContent(LoadError):  # noqa: N818  (it says what was found)
+    """What lies at a path is not the volume that is looked for."""
+
+    def __init__(self, path: object) -> None:
+        super().__init__(
+            path,
+            "this is not the volume that the scene was made with (its content differs)",
+            "open the volume by itself",
+        )
+
+
 def load_known(path: str | os.PathLike[str], key: str | None = None) -> Volume:
     """Read the volume of a path: of several series, or at a lower resolution, that which has the key.
 
     Raises
     ------
     LoadError
-        If it cannot be read, or none of these has the key.
+        If it cannot be read.
+    OtherContent
+        If none of these has the key.
     """
     from . import load
 
@@ -29,11 +42,7 @@ def load_known(path: str | os.PathLike[str], key: str | None = None) -> Volume:
     for other in _other_readings(path, volume):
         if other.key == key:
             return other
-    raise LoadError(
-        path,
-        "this is not the volume that the scene was made with (its content differs)",
-        "open the volume by itself",
-    )
+    raise OtherContent(path)
 
 
 def _other_readings(path: str | os.PathLike[str], volume: Volume) -> Iterator[Volume]:

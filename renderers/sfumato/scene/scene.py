@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
@@ -311,13 +312,19 @@ class Scene:
             ) from None
 
     @staticmethod
-    def open(path: str | os.PathLike[str], volume: Volume | None = None) -> Scene:
-        """Read a scene file and the volume it names.
+    def open(
+        path: str | os.PathLike[str],
+        volume: Volume | None = None,
+        places: Sequence[str | os.PathLike[str]] = (),
+    ) -> Scene:
+        """Read a scene file and the volume it names; one that has moved is known by its content.
 
         Parameters
         ----------
         volume : Volume, optional
             Use this volume instead of the one that the scene names.
+        places : sequence of path
+            Folders in which a volume that has moved is looked for, after the scene's own.
 
         Raises
         ------
@@ -336,7 +343,7 @@ class Scene:
                 source, f"not a scene file ({error})", "open a .sfumato file or a volume"
             ) from None
         if volume is None and isinstance(data, dict) and data.get("volume"):
-            volume = _find_volume(data["volume"], source)
+            volume = _find_volume(data["volume"], source, places)
         return Scene.from_json(located(data, source.parent), volume)
 
 
@@ -389,16 +396,23 @@ def _portable(volume_path: str, scene_path: Path) -> str:
         return str(Path(volume_path).resolve())
 
 
-def _find_volume(reference: Any, scene_path: Path) -> Volume:
-    from ..io import load_known
+def _find_volume(
+    reference: Any, scene_path: Path, places: Sequence[str | os.PathLike[str]] = ()
+) -> Volume:
+    from ..io import OtherContent, find_moved, load_known
 
     if not isinstance(reference, dict) or not isinstance(reference.get("path"), str) or not reference["path"]:
         raise LoadError(
             scene_path, "the scene does not say where its volume is", "open the volume first, then the scene"
         )
     name = reference["path"]
-    wanted = reference.get("hash")
-    return load_known(
-        name if name.startswith("sample:") else scene_path.parent / name,
-        wanted if isinstance(wanted, str) else None,
-    )
+    wanted = reference.get("hash") if isinstance(reference.get("hash"), str) else None
+    if name.startswith("sample:"):
+        return load_known(name, wanted)
+    there = scene_path.parent / name
+    if wanted is None or there.exists():
+        try:
+            return load_known(there, wanted)
+        except OtherContent:
+            pass
+    return find_moved(there, str(wanted), [scene_path.parent, *places])
