@@ -15,11 +15,13 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 from qtpy.QtCore import Qt
+from qtpy.QtGui import QIcon
 from qtpy.QtWidgets import QApplication, QFileDialog, QPushButton, QWidget
 
 from sfumato import Scene
 from sfumato_ui import autosave
 from sfumato_ui.recent import MAX_RECENT, recent_files, remember
+from sfumato_ui.recent_pictures import file_of
 from sfumato_ui.recovery import abandoned
 from sfumato_ui.settings import data_dir
 from sfumato_ui.window import MainWindow
@@ -265,8 +267,20 @@ def test_recent_files_are_listed_marked_and_cleared(
     assert not gone.isEnabled()
     with qtbot.waitSignal(window.files.opened, timeout=20_000):
         there.trigger()
+    # What is open is in the list as it looks, once it has come to rest.
+    assert _is_plain(menu.actions()[0].icon())
+    qtbot.waitUntil(file_of(str(volume_file)).exists, timeout=30_000)
+    menu.aboutToShow.emit()
+    assert not _is_plain(menu.actions()[0].icon())
+    assert _is_plain(menu.actions()[1].icon())
     next(a for a in menu.actions() if a.text() == "Clear the list").trigger()
     assert recent_files() == []
+
+
+def _is_plain(icon: QIcon) -> bool:
+    """Tell whether an icon has but one colour."""
+    image = icon.pixmap(40).toImage()
+    return len({image.pixel(x, y) for x in range(0, 40, 4) for y in range(0, 40, 4)}) == 1
 
 
 def test_dialogs_start_in_the_last_folder(

@@ -19,7 +19,7 @@ import sfumato_samples
 from .bindings import explain
 from .editing import Editor
 from .icons import icon
-from .recent import RecentMenu
+from .recent_menu import RecentMenu
 from .subject import is_open
 from .theme import current_theme
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +17,7 @@ from sfumato.geometry import is_geometry
 from .autosave import Slot
 from .dialogs import ask_about_unsaved
 from .editing import Editor
-from .loading import SCENE_SUFFIX, Loader, Wish, geometry_notices
+from .loading import SAMPLE, SCENE_SUFFIX, Loader, Wish, geometry_notices
 from .messages import MessageBar
 from .raw_dialog import RawDialog
 from .recent import last_folder, recent_folders, remember
@@ -175,6 +176,14 @@ class Files(QObject):
             return False
         self._begin(Wish(str(slot.scene_file), slot=slot))
         return True
+
+    def path(self) -> str:
+        """Return the path of what is open, as the recent files list it; nothing if it has none."""
+        scene = self._editor.scene
+        named = scene.volume.info.path if scene.volume is not None else ""
+        named = named or next((g.path for g in scene.geometry if g.path), "")
+        named = self.scene_path or named
+        return os.path.abspath(named) if named and not named.startswith(SAMPLE) else ""
 
     def identify(self) -> tuple[str, str]:
         """Return the scene's file, or nothing, and its name."""

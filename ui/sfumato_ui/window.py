@@ -38,6 +38,7 @@ from .messages import MessageBar
 from .panels.light import LightPage
 from .panels.material import MaterialPage
 from .panels.view import ViewPage
+from .recent_pictures import RecentPictures
 from .recovery import Recovery
 from .settings import settings
 from .status import StatusLine
@@ -94,6 +95,7 @@ class MainWindow(QMainWindow):
         self.views = QSplitter(Qt.Orientation.Horizontal)
         self.vtk = VtkLayout(self.views, self.editor, self.messages)
         self.autosave = Autosave(self.editor, self.files.identify, self)
+        self.recent_pictures = RecentPictures(self.viewport, self.files.path)
         self.recovery = Recovery(self.messages, self.files.recover)
         self.trouble = Trouble(self.editor, self.files, self.driver, self.worker, self.messages)
         self._closed = False
