@@ -11,6 +11,7 @@ from qtpy.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QToolButto
 from sfumato.scene import Field, Param, TechniqueParams
 
 from .editing import Editor
+from .help_pictures import illustrated, pictures_of
 from .icons import icon
 from .sliders import LabelledSlider, Range
 from .theme import current_theme
@@ -74,8 +75,8 @@ def slider_range(param: Param) -> Range:
     return low, high
 
 
-def slider_for(field: Field) -> LabelledSlider:
-    """Return the slider of a numeric field."""
+def slider_for(field: Field, key: str = "") -> LabelledSlider:
+    """Return the slider of a numeric field, with the pictures that help has of a key."""
     param = field.param
     assert param is not None
     low, high = slider_range(param)
@@ -97,7 +98,7 @@ def slider_for(field: Field) -> LabelledSlider:
     return LabelledSlider(
         label_of(field), ((low, high),), None if field.default is None else float(field.default),
         unit=param.unit, tip=tooltip_of(param), decimals=decimals, step=step, limits=limits,
-        none_label=param.none_label,
+        none_label=param.none_label, pictures=pictures_of(key),
     )  # fmt: skip
 
 
@@ -134,6 +135,8 @@ class ParamControl(QWidget):
         assert field.param is not None
         self._editor, self._path, self.field = editor, path, field
         self.name = label_of(field)
+        owner = editor.scene.technique_id if path.startswith("technique.") else "Scene"
+        key = f"{owner}.{field.name}"
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         self.control: LabelledSlider | QCheckBox | ChoiceBox
@@ -142,10 +145,11 @@ class ParamControl(QWidget):
         elif field.param.choices:
             self.control = self._choice(field.param)
         else:
-            self.control = slider_for(field)
+            self.control = slider_for(field, key)
             bind_slider(self.control, editor, path, self.name.lower(), field.kind)
         self.control.setAccessibleName(self.name)
-        self.control.setToolTip(tooltip_of(field.param))
+        if not isinstance(self.control, LabelledSlider):
+            self.control.setToolTip(illustrated(tooltip_of(field.param), key))
         choice = isinstance(self.control, ChoiceBox)
         layout.addWidget(labelled(self.name, self.control) if choice else self.control, 1)
         self.reset: QToolButton | None = None

@@ -13,6 +13,7 @@ from sfumato.scene.light import FARTHEST
 from .dial import MOVE, SOFTEN
 from .editing import Editor
 from .generated import tooltip_of
+from .help_pictures import pictures_of
 from .lamp_places import axis_names, diagonal_of
 from .sliders import LabelledSlider
 from .vector_row import VectorRow
@@ -141,6 +142,7 @@ def light_slider(
     slider = LabelledSlider(
         param.label, (param.soft,), declared.default, unit=param.unit, tip=tooltip_of(param), decimals=decimals,
         step=0.05 if log else 1.0, limits=(low, min(high, LONGEST)), log=log, none_label=param.none_label,
+        pictures=pictures_of(f"Light.{field}"),
     )  # fmt: skip
 
     def edit(value: float | None) -> None:

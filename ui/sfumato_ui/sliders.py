@@ -233,6 +233,8 @@ class LabelledSlider(QWidget):
         Value of the reset; nothing where having no value is the default: then the reset emits `cleared`.
     none_label : str
         What having no value means, in the label: "from lamp".
+    pictures : str
+        Rich text with pictures of less and more, for the tooltip.
     limits : (float, float), optional
         Range of the typed number; the slider's if not given.
     """
@@ -248,9 +250,10 @@ class LabelledSlider(QWidget):
     def __init__(
         self, label: str, pieces: tuple[Range, ...], default: float | None, *, unit: str = "", tip: str = "",
         decimals: int = 0, step: float = 1.0, limits: Range | None = None, log: bool = False,
-        none_label: str = "",
+        none_label: str = "", pictures: str = "",
     ) -> None:  # fmt: skip
         super().__init__()
+        self._pictures = pictures
         self.default = default
         self._text, self._none_label = label, none_label
         self.label = QLabel(label)
@@ -276,7 +279,9 @@ class LabelledSlider(QWidget):
         if self.default is not None:
             shown = f"{self.number.textFromValue(self.default)}{self.number.suffix()}"
         for widget in (self, self.label, self.slider, self.number):
-            widget.setToolTip(f"<p>{tip}</p><p>Double-click the name for {shown}.</p>" if tip else "")
+            widget.setToolTip(
+                f"<p>{tip}</p>{self._pictures}<p>Double-click the name for {shown}.</p>" if tip else ""
+            )
         self.slider.setAccessibleName(label)
         self.number.setAccessibleName(f"{label} in {unit or 'numbers'}")
         self.reset.setAccessibleName(f"Reset {label}")

@@ -15,6 +15,7 @@ from sfumato import Renderer, SfumatoError
 from ..errors import UsageError
 from .figure import Figure, file_name
 from .figures import FIGURES
+from .help import draw_help
 from .hero import draw_hero
 from .page import write_page
 from .sheet import draw_figure, save
@@ -57,12 +58,19 @@ def _command(
     only: Annotated[
         str, Parameter(help="Figures, as in 1,8,schlegel2011-9; the page is written once all are there.")
     ] = "",
+    help_pictures: Annotated[
+        bool, Parameter(negative="", help="Draw the pictures of the window's tooltips instead.")
+    ] = False,
     hero: Annotated[bool, Parameter(negative="", help="Draw the README's picture instead.")] = False,
     scale: Annotated[float, Parameter(help="Of the pictures' sides.")] = 1.0,
     frames: Annotated[int | None, Parameter(help="Jittered frames of each panel.")] = None,
 ) -> int:
     if not 0.05 <= scale <= 4 or not (frames is None or 1 <= frames <= 256):
         raise UsageError("--scale 0.05 to 4 and --frames 1 to 256 are possible")
+    if help_pictures:
+        for key in draw_help(only=only):
+            print(key, flush=True)
+        return 0
     if hero:
         return _draw_hero(output.parent / HERO, scale, frames)
     numbers = chosen(only)

@@ -15,6 +15,7 @@ from ..auto_exposure import AutoExposure
 from ..dial import MOVE, SOFTEN, LightDial
 from ..editing import Editor
 from ..generated import ChoiceBox, ParamControl, bind_slider, controls_for, labelled, slider_for, tooltip_of
+from ..help_pictures import pictures_of
 from ..lamp_place import LampForm, LampMore, LampPlace, radius_slider, show_radius
 from ..lamp_temperature import LampTemperature
 from ..lamp_tools import LampTools
@@ -59,7 +60,7 @@ class LightPage(Page):
         self.note.setProperty("muted", True)
         self.note.setWordWrap(True)
         self.attached = self._attached_menu()
-        self.floor = slider_for(fields_of(Scene)["shadow_floor"])
+        self.floor = slider_for(fields_of(Scene)["shadow_floor"], "Scene.shadow_floor")
         bind_slider(self.floor, editor, "shadow_floor", "the shadow floor")
         self.audit = ShadowAudit()
         # All that a first look needs fits into a window of 1280 x 720.
@@ -104,7 +105,7 @@ class LightPage(Page):
         assert declared.param is not None
         return LabelledSlider(
             label, pieces, float(declared.default), unit=declared.param.unit, tip=tooltip_of(declared.param),
-            decimals=1, step=1.0,
+            decimals=1, step=1.0, pictures=pictures_of(f"Light.{field}"),
         )  # fmt: skip
 
     def _technique_menu(self) -> ChoiceBox:

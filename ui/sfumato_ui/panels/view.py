@@ -72,11 +72,11 @@ class ViewPage(Page):
             self.turntable, "Let the subject turn, once around in 12 s; the next press or key ends it", "turntable"
         )
         self.bookmarks = BookmarkButton(editor)
-        self.lens = slider_for(fields_of(Camera)["view_angle"])
+        self.lens = slider_for(fields_of(Camera)["view_angle"], "Camera.view_angle")
         self.clip = ClipControls(editor, clips)
         self.crop = CropControls(editor, clips)
         self.shapes = GeometryControls(editor)
-        self.exposure = slider_for(fields_of(Scene)["exposure"])
+        self.exposure = slider_for(fields_of(Scene)["exposure"], "Scene.exposure")
         self.step = slider_for(fields_of(Scene)["step"])
         self.background: list[QPushButton] = []
         self.more = Section("More", "view_more")

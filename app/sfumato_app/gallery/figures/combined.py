@@ -76,6 +76,11 @@ def _pipe() -> Scene:
     return Scene(volume=volume, transfer=transfer, camera=camera, lights=(LAMP,), geometry=(lines,))
 
 
+def tubes_in_a_pipe() -> Scene:
+    """Return the lines in the pipe from near."""
+    return _combined(_pipe().with_(camera=_near()))
+
+
 def figure_1() -> Figure:
     """Streamlines in the mixing pipe."""
     return Figure(
