@@ -46,7 +46,7 @@ def ramp(direction: np.ndarray, dtype: type = np.float32) -> Volume:
 @pytest.mark.parametrize("turn", TURNS)
 def test_a_ramp_reads_back_exactly(turn: str, cut: Cut) -> None:
     volume = ramp(TURNS[turn])
-    middle = np.asarray(volume.center) + (0.3, -0.2, 0.4)
+    middle = np.add(volume.center, (0.3, -0.2, 0.4))
     frame = Frame(cut, tuple(middle), 0.31, 90, 70)
     values = sample(volume, frame)
     rows, columns = np.mgrid[0:70, 0:90]
@@ -115,7 +115,7 @@ def test_without_known_sides_slices_follow_the_array() -> None:
     for cut, axis in zip(cuts_of(volume), (2, 1, 0), strict=True):
         assert abs(cut.back @ turn[:, axis]) == pytest.approx(1)
         assert not set(cut.letters.values()) & set("RLAPSI")
-        assert step_along(volume, cut) == volume.spacing[axis]
+        assert step_along(volume, cut.back) == volume.spacing[axis]
         values = sample(volume, Frame(cut, first_point(volume), 0.05, 5, 5))
         assert np.isfinite(values).all()
     # The first row of the first slice is on top, its first column on the left.

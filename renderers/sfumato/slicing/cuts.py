@@ -78,9 +78,9 @@ def cuts_of(volume: Volume) -> tuple[Cut, Cut, Cut]:
     )
 
 
-def step_along(volume: Volume, cut: Cut) -> float:
-    """Return the distance in mm from one slice to the next: the spacing of the array's axis that is nearest."""
-    nearest = int(np.argmax(np.abs(cut.back @ np.asarray(volume.direction))))
+def step_along(volume: Volume, way: object) -> float:
+    """Return how far in mm it is to the next voxel in a direction: the spacing of the array's nearest axis."""
+    nearest = int(np.argmax(np.abs(np.asarray(way) @ np.asarray(volume.direction))))
     return volume.spacing[nearest]
 
 

@@ -34,7 +34,7 @@ def sample(volume: Volume, frame: Frame) -> np.ndarray:
     # The array's axes are z, y, x; the first column belongs to the axis of length 1.
     matrix = np.stack([np.zeros(3), down[::-1], across[::-1]], axis=1)
     _interpolate(volume.data, matrix, start[::-1], values)
-    picture = values[0]
+    picture: np.ndarray = values[0]
     picture[~_inside(volume, start, across, down, frame)] = np.nan
     return picture
 
