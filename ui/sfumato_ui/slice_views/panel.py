@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from qtpy.QtCore import QEvent, Qt, Signal
 from qtpy.QtGui import QHideEvent, QResizeEvent, QShowEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout
@@ -24,6 +25,8 @@ from .window_row import WindowRow
 LAMPS, ENLARGED = "slices/lamps", "slices/enlarged"
 #: Least width in pixels, and with larger letters in lines' heights.
 NARROWEST, NARROWEST_LINES = 270, 17
+#: Least height of a pane in parts of the highest.
+LOWEST = 0.65
 
 
 class SlicePanel(QFrame):
@@ -60,7 +63,7 @@ class SlicePanel(QFrame):
         _name(self.lamps, "Lamps in the slices", "Show the lamps in the slices, and take hold of them there")
         _name(self.whole, "Show the whole slices", "Show the whole slices: no zoom, no pan (0)")
         _name(self.shut, "Close the slice views", "Close the slice views")
-        column = QVBoxLayout(self)
+        self._column = column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(2)
         bar = QVBoxLayout()
@@ -73,7 +76,9 @@ class SlicePanel(QFrame):
             pane.setToolTip(KEYS)
             column.addWidget(pane, 1)
         column.addLayout(self._told())
-        self.setMinimumWidth(max(NARROWEST, NARROWEST_LINES * self.fontMetrics().height()))
+        # What is told below has no least width of its own, so that it never pushes the picture.
+        least = max(NARROWEST, NARROWEST_LINES * self.fontMetrics().height())
+        self.setMinimumWidth(max(least, column.minimumSize().width()))
 
     def _told(self) -> QVBoxLayout:
         """Return the two lines below: where the cross-hair is, and what is there."""
@@ -91,6 +96,7 @@ class SlicePanel(QFrame):
 
     def _connect(self) -> None:
         self._editor.changed.connect(self._on_changed)
+        self.state.replaced.connect(self._share)
         self.state.moved.connect(self._tell)
         self.state.windowed.connect(self._tell)
         self.slicer.windows_found.connect(self.state.offer)
@@ -126,6 +132,15 @@ class SlicePanel(QFrame):
         shown = [pane.room for pane in self.panes if not pane.isHidden()]
         if self.state.volume is not None and self.isVisible():
             self.state.set_fit(fitting_scale(self.state.volume, shown))
+
+    def _share(self) -> None:
+        """Give each pane a height that suits what it shows: at the same scale, all get larger by that."""
+        volume = self.state.volume
+        if volume is None:
+            return
+        heights = [float(np.ptp(volume.corners() @ np.asarray(pane.cut.up))) for pane in self.panes]
+        for pane, height in zip(self.panes, heights, strict=True):
+            self._column.setStretchFactor(pane, round(100 * max(LOWEST, height / max(heights))))
 
     def _tell(self) -> None:
         """Say where the cross-hair is and what lies there."""
