@@ -199,3 +199,9 @@ def test_other_volumes_start_with_what_is_in_them() -> None:
     assert 0.7 < automatic.window.high < 0.9
     assert whole.window.width == pytest.approx(1e6)
     assert windows_for(Volume(np.full((3, 3, 3), 5, np.uint8)))[0].window == ValueWindow(5, 1)
+
+
+def test_a_mask_is_white_on_black() -> None:
+    data = np.zeros((9, 9, 9), np.uint8)
+    data[2:5] = 3
+    assert windows_for(Volume(data))[0].window == ValueWindow(1.5, 3)

@@ -338,6 +338,50 @@ def test_lamps_are_moved_within_the_slice(make_window: MakeWindow, qtbot: QtBot,
     assert panel.state.cross[:2] == pytest.approx(np.asarray(lights[1].position)[:2], abs=mm)
 
 
+def test_the_light_falls_on_the_slices(make_window: MakeWindow, qtbot: QtBot) -> None:
+    """A wall before the eye casts its shadow backwards; a move of the lamp, or of the slice, brings other light."""
+    data = np.full((40, 40, 40), 50, np.uint8)
+    data[:, 10:13, 12:28] = 250
+    volume = Volume(data, info=VolumeInfo(path="wall.npy", orientation_known=True))
+    transfer = TransferFunction.from_points([(100, (1, 1, 1), 0.0), (200, (1, 1, 1), 0.9999)])
+    scene = Scene(volume=volume, transfer=transfer, technique="raycast", lights=(Light(tilt=0, aperture=2),))
+    window = make_window(scene, size=(920, 560))
+    panel = open_slices(window, qtbot)
+    axial, coronal, _ = panel.panes
+    dark, bright = at(axial, (17.0, 30.0, 20.5)), at(axial, (4.0, 30.0, 20.5))
+
+    def seen(pane: SlicePane, place: QPoint) -> int:
+        return pane.grab().toImage().pixelColor(place).red()
+
+    def lit() -> bool:
+        panes = [pane for pane in panel.panes if pane.isVisible()]
+        return panel.lighter.idle and all(
+            pane.light is not None and not pane._light_timer.isActive() for pane in panes
+        )  # fmt: skip
+
+    panel.state.set_window(ValueWindow(60, 200))
+    settled(window, qtbot)
+    plain = seen(axial, bright)
+    assert plain > 100
+    assert seen(axial, dark) == pytest.approx(plain, abs=2)
+    qtbot.mouseClick(panel.lamps, LEFT)
+    qtbot.mouseClick(panel.light, LEFT)
+    qtbot.waitUntil(lit, timeout=20_000)
+    assert seen(axial, dark) < 0.45 * seen(axial, bright)
+    assert seen(axial, bright) >= plain
+    # From the left the shadow falls to the other side.
+    window.editor.change_light("Move the light", attached="patient", tilt=105.0, rotation=0.0)
+    qtbot.waitUntil(lambda: lit() and axial.light.request.scene is window.editor.scene, timeout=20_000)
+    assert seen(axial, at(axial, (4.0, 9.3, 20.5))) < 0.6 * seen(axial, at(axial, (4.0, 30.0, 20.5)))
+    assert seen(axial, dark) > 0.7 * plain
+    # Another slice has no light until its own is known; off, all is as before.
+    qtbot.mouseClick(coronal, LEFT, NONE, at(coronal, (20.0, 20.0, 30.0)))
+    qtbot.waitUntil(lit, timeout=20_000)
+    qtbot.mouseClick(panel.light, LEFT)
+    settled(window, qtbot)
+    assert seen(axial, dark) == pytest.approx(plain, abs=2)
+
+
 def test_the_mark_lies_over_the_picture_alone_and_pick_moves_it(
     make_window: MakeWindow, hand_of: Any, qtbot: QtBot
 ) -> None:
@@ -368,6 +412,7 @@ def plain(shape: tuple[int, ...], value: float = 3, dtype: type = np.uint8, **kn
 
 def test_anything_may_be_opened_while_they_are_shown(shown: MainWindow, qtbot: QtBot) -> None:
     panel, editor = settled(shown, qtbot), shown.editor
+    qtbot.mouseClick(panel.light, LEFT)
     panel.state.go_to((-5, 2, 108))
     kept = panel.state.cross.copy()
     step = Volume(ramp().data * 0.5, ramp().spacing, ramp().origin, ramp().direction, ramp().info)

@@ -32,6 +32,7 @@ _GLYPHS = {
     "close": "ph.x",
     "vtk": "ph.columns",
     "slices": "ph.rows",
+    "lamp": "ph.lamp",
     "enlarge": "ph.arrows-out-simple",
     "reduce": "ph.arrows-in-simple",
     "history": "ph.clock-counter-clockwise",

@@ -94,12 +94,11 @@ def automatic_window(volume: Volume) -> ValueWindow:
 
     The least value is not counted: it is the empty space of most volumes, and may be all but a few of their voxels.
     """
-    values = thinned(volume)
+    values, whole = thinned(volume), volume.value_range
     filled = values[values > values.min()]
-    if filled.size == 0:
-        return ValueWindow.between(*_apart(*volume.value_range))
-    low, high = (float(v) for v in np.percentile(filled, (DARKEST, BRIGHTEST)))
-    return ValueWindow.between(*_apart(low, high))
+    low, high = (float(v) for v in np.percentile(filled, (DARKEST, BRIGHTEST))) if filled.size else whole
+    # Of a mask, what is filled is all the same: its contrast is that to the empty space.
+    return ValueWindow.between(*_apart(*((low, high) if high > low else whole)))
 
 
 def _apart(low: float, high: float) -> tuple[float, float]:

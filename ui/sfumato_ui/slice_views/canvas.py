@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from qtpy.QtCore import QSize, Qt
-from qtpy.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent, QShowEvent
+from qtpy.QtCore import QSize, Qt, QTimer
+from qtpy.QtGui import QColor, QImage, QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from sfumato.scene.vectors import vec3
@@ -18,6 +18,7 @@ from ..theme import PICTURE_GREY
 from ..tools import PictureView
 from . import painting
 from .lamps import SliceLamps
+from .lighter import PLACES, Lighter, LightImages, LightRequest
 from .slicer import SliceImage, Slicer, SliceRequest
 from .state import SliceState
 
@@ -25,6 +26,8 @@ from .state import SliceState
 MOST_PIXELS = 700_000
 #: Free pixels beside the volume when the whole of it is seen.
 MARGIN = 5
+#: Least time in milliseconds between two questions for the light.
+LIGHT_MS = 60
 NOTHING = "No volume to slice"
 
 
@@ -37,12 +40,23 @@ class SliceCanvas(QWidget):
         Which of the state's cuts.
     """
 
-    def __init__(self, editor: Editor, state: SliceState, slicer: Slicer, index: int) -> None:
+    def __init__(
+        self, editor: Editor, state: SliceState, slicer: Slicer, lighter: Lighter, index: int
+    ) -> None:
         super().__init__()
+        self._lighter = lighter
         self._editor, self._state, self._slicer, self._index = editor, state, slicer, index
         self.lamps = SliceLamps(editor, state, index)
         self.made: SliceImage | None = None
         self._wanted: SliceRequest | None = None
+        self.light: LightImages | None = None
+        self._light_wanted: LightRequest | None = None
+        self._lit_image: tuple[SliceImage, LightImages, QImage] | None = None
+        #: Whether the light is shown.
+        self._lit = False
+        self._light_timer = QTimer(self)
+        self._light_timer.setSingleShot(True)
+        self._light_timer.timeout.connect(self._want_light)
         #: Whether it has the bar of true length; one view is enough, since all have the same scale.
         self.scale_bar = False
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -54,7 +68,8 @@ class SliceCanvas(QWidget):
         state.windowed.connect(self.want)
         state.replaced.connect(self._on_replaced)
         slicer.sliced.connect(self._on_sliced)
-        editor.changed.connect(lambda old, new: self.update())
+        lighter.lit.connect(self._on_lit)
+        editor.changed.connect(lambda old, new: self._on_changed())
         editor.light_selected.connect(lambda index: self.update())
 
     def sizeHint(self) -> QSize:
@@ -104,6 +119,7 @@ class SliceCanvas(QWidget):
         ):  # fmt: skip
             self._wanted = request
             self._slicer.want(request)
+        self._ask_for_light()
 
     def _on_sliced(self, made: SliceImage) -> None:
         request = made.request
@@ -113,7 +129,7 @@ class SliceCanvas(QWidget):
 
     def _on_replaced(self) -> None:
         """Forget what belongs to another volume."""
-        self.made = self._wanted = None
+        self.made = self._wanted = self.light = self._light_wanted = None
         name = f"{self.cut.title} slice"
         self.setAccessibleName(name)
         self._describe()
@@ -140,7 +156,49 @@ class SliceCanvas(QWidget):
 
     def forget(self) -> None:
         """Ask anew when it is shown again."""
-        self._wanted = None
+        self._wanted = self._light_wanted = None
+
+    # -- the light --------------------------------------------------------------------------------
+    def set_lit(self, on: bool) -> None:
+        """Show how much light reaches the slice, or not."""
+        self._lit = on
+        self.light = self._light_wanted = None
+        self._ask_for_light()
+        self.update()
+
+    def _on_changed(self) -> None:
+        self._ask_for_light()
+        self.update()
+
+    def _ask_for_light(self) -> None:
+        """Ask for the light soon, with all that changes until then."""
+        if self._lit and not self._light_timer.isActive():
+            self._light_timer.start(LIGHT_MS)
+
+    def _want_light(self) -> None:
+        scene = self._editor.scene
+        if not self._lit or not self.isVisible() or scene.volume is not self._state.volume:
+            return
+        if scene.volume is None or scene.camera is None or scene.transfer is None:
+            return
+        request = LightRequest(scene, self._frame(math.sqrt(PLACES / max(1, self.width() * self.height()))))
+        if self._light_wanted is None or self._light_wanted.causes != request.causes:
+            self._light_wanted = request
+            self._lighter.want(request)
+
+    def _on_lit(self, light: LightImages) -> None:
+        request = light.request
+        if self._lit and request.frame.cut.id == self.cut.id and request.scene.volume is self._state.volume:
+            self.light = light
+            self.update()
+
+    def _image(self, made: SliceImage) -> QImage:
+        """Return the slice's picture, with the light on it if that of the same slice is known; it is made once."""
+        if self.light is None or not _same_slice(made, self.light):
+            return made.image
+        if self._lit_image is None or self._lit_image[0] is not made or self._lit_image[1] is not self.light:
+            self._lit_image = made, self.light, painting.lit_image(made, self.light)
+        return self._lit_image[2]
 
     # -- looks ------------------------------------------------------------------------------------
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -159,7 +217,7 @@ class SliceCanvas(QWidget):
         painter.setFont(painting.small(self.font()))
         if self.made is not None:
             painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-            painting.draw_slice(painter, view, self.made)
+            painting.draw_on_slice(painter, view, self.made.request.frame, self._image(self.made))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if scene.volume is not None:
             painting.draw_cuts(painter, view, scene, self.cut, np.asarray(cross))
@@ -168,6 +226,13 @@ class SliceCanvas(QWidget):
         painting.draw_names(painter, self.rect(), self.cut, self.place)
         if self.scale_bar:
             overlay.draw_scale_bar(painter, self.rect(), view.camera)
+
+
+def _same_slice(made: SliceImage, light: LightImages) -> bool:
+    """Tell whether a light is that on a slice, whatever part of it."""
+    frame = made.request.frame
+    away = np.asarray(light.request.frame.middle) - np.asarray(frame.middle)
+    return abs(float(frame.cut.back @ away)) < 1e-6
 
 
 __all__ = ["SliceCanvas"]

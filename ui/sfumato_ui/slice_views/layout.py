@@ -76,7 +76,7 @@ class SliceLayout(QObject):
     def close(self) -> None:
         """Make no slices any more: the window closes."""
         if self.panel is not None:
-            self.panel.slicer.close()
+            self.panel.close_threads()
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
-from qtpy.QtGui import QColor, QFont, QPainter, QPen
+from qtpy.QtGui import QColor, QFont, QImage, QPainter, QPen
 
 from sfumato import Scene, Volume
 from sfumato.scene import ClipPlane, CropBox
-from sfumato.slicing import Cut
+from sfumato.slicing import Cut, Frame
 
 from .. import overlay
 from ..clip_planes import unit, vec
@@ -17,6 +17,7 @@ from ..theme import DARK
 from ..tools.handles import draw_line
 from ..tools.planes import outline
 from ..tools.view import PictureView
+from .lighter import LightImages
 from .slicer import SliceImage
 
 #: Half the gap in pixels that the cross-hair leaves open, so that what lies there is seen.
@@ -35,15 +36,37 @@ def small(font: QFont) -> QFont:
     return made
 
 
-def draw_slice(painter: QPainter, view: PictureView, made: SliceImage) -> None:
-    """Draw a slice where it lies in the view: while one zooms or pans, the last one follows."""
-    frame = made.request.frame
+def draw_on_slice(painter: QPainter, view: PictureView, frame: Frame, image: QImage) -> None:
+    """Draw a picture of a slice where it lies in the view: while one zooms or pans, the last one follows."""
     middle = view.place(np.asarray(frame.middle))
     if middle is None:
         return
     scale = frame.mm_per_pixel / view.mm_per_pixel(np.asarray(frame.middle))
     wide, high = frame.width * scale, frame.height * scale
-    painter.drawImage(QRectF(middle[0] - wide / 2, middle[1] - high / 2, wide, high), made.image)
+    painter.drawImage(QRectF(middle[0] - wide / 2, middle[1] - high / 2, wide, high), image)
+
+
+def lit_image(made: SliceImage, light: LightImages) -> QImage:
+    """Return a slice's picture with light on it: darkened where little arrives, glowing where much does."""
+    frame, coarse = made.request.frame, light.request.frame
+    away = np.asarray(coarse.middle) - np.asarray(frame.middle)
+    scale = coarse.mm_per_pixel / frame.mm_per_pixel
+    wide, high = coarse.width * scale, coarse.height * scale
+    x = frame.width / 2 + float(away @ np.asarray(frame.cut.right)) / frame.mm_per_pixel
+    y = frame.height / 2 - float(away @ np.asarray(frame.cut.up)) / frame.mm_per_pixel
+    box = QRectF(x - wide / 2, y - high / 2, wide, high)
+    image = made.image.copy()
+    mode = QPainter.CompositionMode
+    with QPainter(image) as painter:
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        painter.setCompositionMode(mode.CompositionMode_Multiply)
+        painter.drawImage(box, light.times)
+        painter.setCompositionMode(mode.CompositionMode_Plus)
+        painter.drawImage(box, light.plus)
+        # The light's coarse pixels reach beyond the volume, its picture does not.
+        painter.setCompositionMode(mode.CompositionMode_DestinationIn)
+        painter.drawImage(0, 0, made.image)
+    return image
 
 
 def draw_cross(painter: QPainter, view: PictureView, cross: np.ndarray) -> None:
@@ -146,6 +169,14 @@ def slice_place(volume: Volume, cut: Cut, cross: np.ndarray) -> str:
 
 
 __all__ = [
-    "common_line", "draw_cross", "draw_cuts", "draw_focus", "draw_marker", "draw_names", "draw_slice",
-    "slice_place", "small",
+    "common_line",
+    "draw_cross",
+    "draw_cuts",
+    "draw_focus",
+    "draw_marker",
+    "draw_names",
+    "draw_on_slice",
+    "lit_image",
+    "slice_place",
+    "small",
 ]  # fmt: skip

@@ -20,6 +20,7 @@ from ..icons import icon
 from ..theme import DARK
 from ..tools.view import Place
 from .canvas import SliceCanvas
+from .lighter import Lighter
 from .slicer import Slicer
 from .state import SliceState
 
@@ -44,8 +45,10 @@ class SlicePane(SliceCanvas):
     #: It is to fill the place of all three, or to give it back.
     enlarge_wanted = Signal()
 
-    def __init__(self, editor: Editor, state: SliceState, slicer: Slicer, index: int) -> None:
-        super().__init__(editor, state, slicer, index)
+    def __init__(
+        self, editor: Editor, state: SliceState, slicer: Slicer, lighter: Lighter, index: int
+    ) -> None:
+        super().__init__(editor, state, slicer, lighter, index)
         self._mode = ""
         self._notches = 0.0
         self._start = self._last = QPointF()

@@ -16,13 +16,14 @@ from ..icons import icon
 from ..lamp_places import place_words
 from ..settings import settings
 from ..theme import current_theme
+from .lighter import Lighter
 from .pane import KEYS, SlicePane
 from .slicer import Slicer
 from .state import SliceState
 from .values import value_words
 from .window_row import WindowRow
 
-LAMPS, ENLARGED = "slices/lamps", "slices/enlarged"
+LIGHT, LAMPS, ENLARGED = "slices/light", "slices/lamps", "slices/enlarged"
 #: Least width in pixels, and with larger letters in lines' heights.
 NARROWEST, NARROWEST_LINES = 270, 17
 #: Least height of a pane in parts of the highest.
@@ -39,10 +40,10 @@ class SlicePanel(QFrame):
         self.setObjectName("SlicePanel")
         self.setAccessibleName("Slice views")
         self._editor = editor
-        self.state, self.slicer = SliceState(self), Slicer(self)
-        self.panes = [SlicePane(editor, self.state, self.slicer, i) for i in range(3)]
+        self.state, self.slicer, self.lighter = SliceState(self), Slicer(self), Lighter(self)
+        self.panes = [SlicePane(editor, self.state, self.slicer, self.lighter, i) for i in range(3)]
         self.window_row = WindowRow(self.state)
-        self.lamps, self.whole, self.shut = (QToolButton() for _ in range(3))
+        self.light, self.lamps, self.whole, self.shut = (QToolButton() for _ in range(4))
         self.place, self.value = QLabel(), QLabel()
         self.enlarged: SlicePane | None = None
         self._lay_out()
@@ -56,10 +57,16 @@ class SlicePanel(QFrame):
         head = QHBoxLayout()
         head.setSpacing(4)
         head.addWidget(self.window_row.choice, 1)
-        for button in (self.lamps, self.whole, self.shut):
+        for button in (self.light, self.lamps, self.whole, self.shut):
             button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
             head.addWidget(button)
-        self.lamps.setCheckable(True)
+        for button in (self.light, self.lamps):
+            button.setCheckable(True)
+        _name(
+            self.light,
+            "Light in the slices",
+            "Show how much light of the lamps reaches each place of the slices",
+        )
         _name(self.lamps, "Lamps in the slices", "Show the lamps in the slices, and take hold of them there")
         _name(self.whole, "Show the whole slices", "Show the whole slices: no zoom, no pan (0)")
         _name(self.shut, "Close the slice views", "Close the slice views")
@@ -101,6 +108,8 @@ class SlicePanel(QFrame):
         self.state.windowed.connect(self._tell)
         self.slicer.windows_found.connect(self.state.offer)
         self.slicer.failed.connect(lambda why: self.value.setText(f"No slice: {why}"))
+        self.lighter.failed.connect(lambda why: self.value.setText(f"No light: {why}"))
+        self.light.toggled.connect(self._show_light)
         self.lamps.toggled.connect(self._show_lamps)
         self.whole.clicked.connect(self.state.show_whole)
         self.shut.clicked.connect(self.close_wanted)
@@ -109,6 +118,7 @@ class SlicePanel(QFrame):
 
     def _restore(self) -> None:
         kept = settings()
+        self.light.setChecked(bool(kept.value(LIGHT, False, type=bool)))
         self.lamps.setChecked(bool(kept.value(LAMPS, True, type=bool)))
         name = str(kept.value(ENLARGED, ""))
         self.enlarge(next((pane for pane in self.panes if pane.cut.id == name), None))
@@ -117,6 +127,7 @@ class SlicePanel(QFrame):
     def _on_changed(self, old: Scene, new: Scene) -> None:
         if new.volume is not self.state.volume:
             self.slicer.forget()
+            self.lighter.forget()
             self.state.show(new)
             self._want_windows()
             self._fit()
@@ -171,6 +182,18 @@ class SlicePanel(QFrame):
             pane.lamps.shown = on
             pane.update()
 
+    def _show_light(self, on: bool) -> None:
+        settings().setValue(LIGHT, on)
+        if not on:
+            self.lighter.forget()
+        for pane in self.panes:
+            pane.set_lit(on)
+
+    def close_threads(self) -> None:
+        """Make nothing any more: the window closes."""
+        self.slicer.close()
+        self.lighter.close()
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Fit the slices to another size."""
         super().resizeEvent(event)
@@ -193,12 +216,15 @@ class SlicePanel(QFrame):
         """Slice nothing that nobody sees."""
         super().hideEvent(event)
         self.slicer.forget()
+        self.lighter.forget()
         for pane in self.panes:
             pane.forget()
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
-        for button, name in ((self.lamps, "light"), (self.whole, "fit"), (self.shut, "close")):
+        for button, name in (
+            (self.light, "light"), (self.lamps, "lamp"), (self.whole, "fit"), (self.shut, "close"),
+        ):  # fmt: skip
             button.setIcon(icon(name, current_theme()))
         self.window_row.refresh_theme()
 
