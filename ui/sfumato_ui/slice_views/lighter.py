@@ -60,7 +60,8 @@ class Lighter(NewestFirst[LightRequest]):
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
-        self._grid: tuple[tuple[object, ...], ExtinctionGrid] | None = None
+        #: The newest scene that was asked for, and its grid.
+        self._grid: tuple[Scene, ExtinctionGrid] | None = None
 
     def want(self, request: LightRequest) -> None:
         """Ask for the light on a slice instead of what the same view asked for before."""
@@ -80,10 +81,22 @@ class Lighter(NewestFirst[LightRequest]):
         self._tell(self.lit, LightImages(wish, *light_images(light, inside)))
 
     def _grid_of(self, scene: Scene) -> ExtinctionGrid:
-        key = (id(scene.volume), scene.transfer, scene.crop, scene.clip)
-        if self._grid is None or self._grid[0] != key:
-            self._grid = key, extinction_grid(scene)
-        return self._grid[1]
+        kept = self._grid
+        if kept is not None and _same_tissue(kept[0], scene):
+            return kept[1]
+        grid = extinction_grid(scene)
+        self._grid = scene, grid
+        return grid
+
+    def forget(self) -> None:
+        """Keep no grid, either."""
+        super().forget()
+        self._grid = None
+
+
+def _same_tissue(a: Scene, b: Scene) -> bool:
+    """Tell whether two scenes take the same of light on its way."""
+    return a.volume is b.volume and (a.transfer, a.crop, a.clip) == (b.transfer, b.crop, b.clip)
 
 
 def light_images(light: np.ndarray, inside: np.ndarray) -> tuple[QImage, QImage]:
