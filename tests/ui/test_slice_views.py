@@ -108,7 +108,7 @@ def grey_at(pane: SlicePane, place: QPoint) -> int:
 
 # -- the layout --------------------------------------------------------------------------------------
 def test_the_views_open_beside_the_picture_and_are_there_again(
-    shown: MainWindow, make_window: MakeWindow, qtbot: QtBot
+    shown: MainWindow, make_window: MakeWindow, qtbot: QtBot, hand_of: Any
 ) -> None:
     panel = shown.slices.panel
     assert panel is not None
@@ -129,11 +129,18 @@ def test_the_views_open_beside_the_picture_and_are_there_again(
     qtbot.mouseDClick(panel.panes[1], LEFT, NONE, QPoint(60, 60))
     assert [pane.isVisible() for pane in panel.panes] == [False, True, False]
     settled(shown, qtbot)
-    again = make_window(scene_of(ramp()), size=(1000, 600))
+    grip = shown.views.handle(1)
+    hand_of(shown).drag(grip, grip.rect().center(), grip.rect().center() - QPoint(100, 0))
+    assert panel.width() > 380
+    part = panel.width() / (panel.width() + shown.viewport.width())
+    qtbot.mouseClick(panel.shut, LEFT)
+    qtbot.mouseClick(shown.strip.slices, LEFT)
+    again = make_window(scene_of(ramp()), size=(1280, 720))
     qtbot.waitUntil(lambda: again.slices.panel is not None and again.slices.panel.isVisible())
     other = again.slices.panel
     assert other is not None
     assert [pane.isVisible() for pane in other.panes] == [False, True, False]
+    qtbot.waitUntil(lambda: abs(other.width() / (other.width() + again.viewport.width()) - part) < 0.03)
     other.panes[1].setFocus()
     qtbot.keyClick(other.panes[1], Qt.Key.Key_Return)
     assert all(pane.isVisible() for pane in other.panes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QObject, Signal
+from qtpy.QtCore import QObject, Qt, Signal
 from qtpy.QtWidgets import QSplitter
 
 from ..docking import dock
@@ -11,9 +11,9 @@ from ..settings import settings
 from ..viewport import Viewport
 from .panel import SlicePanel
 
-OPEN = "slices/open"
-#: Part of the picture's width that the views take.
-PART = 1 / 3
+OPEN, WIDE = "slices/open", "slices/part"
+#: Part of the picture's width that the views take at first, and the least and most that is remembered.
+PART, LIMITS = 1 / 3, (0.1, 0.8)
 
 
 class SliceLayout(QObject):
@@ -28,6 +28,7 @@ class SliceLayout(QObject):
         super().__init__(splitter)
         self._splitter, self._editor, self._viewport = splitter, editor, viewport
         self.panel: SlicePanel | None = None
+        splitter.splitterMoved.connect(lambda place, index: self._keep_part())
 
     @property
     def is_open(self) -> bool:
@@ -46,9 +47,10 @@ class SliceLayout(QObject):
         if opened:
             panel = self.panel or self._make()
             panel.show()
-            dock(self._splitter, panel, PART)
+            self._dock()
         elif self.panel is not None:
-            if self.panel.isAncestorOf(self._splitter.window().focusWidget()):
+            focused = self._splitter.window().focusWidget()
+            if focused is not None and self.panel.isAncestorOf(focused):
                 self._viewport.setFocus()
             self.panel.hide()
         self._mark()
@@ -58,10 +60,16 @@ class SliceLayout(QObject):
         panel = self.panel = SlicePanel(self._editor)
         panel.close_wanted.connect(lambda: self.set_open(False))
         panel.state.moved.connect(self._mark)
+        # When the window opens with them, its size is known only then.
+        panel.seen.connect(self._dock, Qt.ConnectionType.QueuedConnection)
         panel.hide()
         self._splitter.addWidget(panel)
         self.rebuilt.emit()
         return panel
+
+    def _dock(self) -> None:
+        if self.panel is not None and self.is_open:
+            dock(self._splitter, self.panel, kept_part())
 
     def go_to(self, point: object) -> None:
         """Move the cross-hair to a world point, if the views are shown."""
@@ -78,10 +86,25 @@ class SliceLayout(QObject):
         if self.panel is not None:
             self.panel.close_threads()
 
+    def _keep_part(self) -> None:
+        """Remember how wide the views are, as the hand made them; a narrow window may leave them no choice."""
+        if self.panel is not None and self.is_open:
+            both = self._splitter.sizes()[0] + self.panel.width()
+            settings().setValue(WIDE, self.panel.width() / max(1, both))
+
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
         if self.panel is not None:
             self.panel.refresh_theme()
+
+
+def kept_part() -> float:
+    """Return the part of the picture's width that the views are to take: as it was, or the first one."""
+    try:
+        part = float(str(settings().value(WIDE, PART)))
+    except ValueError:
+        return PART
+    return part if LIMITS[0] <= part <= LIMITS[1] else PART
 
 
 __all__ = ["SliceLayout"]

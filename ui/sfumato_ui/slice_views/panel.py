@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from qtpy.QtCore import QEvent, Qt, Signal
+from qtpy.QtCore import QEvent, QPoint, Qt, Signal
 from qtpy.QtGui import QHideEvent, QResizeEvent, QShowEvent
-from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout
+from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QToolTip, QVBoxLayout
 
 from sfumato import Scene
 from sfumato.scene.vectors import vec3
@@ -34,6 +34,8 @@ class SlicePanel(QFrame):
     """Bar, panes and status; it listens to the editor as long as it lives, and slices while it is seen."""
 
     close_wanted = Signal()
+    #: It came to be seen.
+    seen = Signal()
 
     def __init__(self, editor: Editor) -> None:
         super().__init__()
@@ -43,7 +45,7 @@ class SlicePanel(QFrame):
         self.state, self.slicer, self.lighter = SliceState(self), Slicer(self), Lighter(self)
         self.panes = [SlicePane(editor, self.state, self.slicer, self.lighter, i) for i in range(3)]
         self.window_row = WindowRow(self.state)
-        self.light, self.lamps, self.whole, self.shut = (QToolButton() for _ in range(4))
+        self.light, self.lamps, self.whole, self.shut, self.help = (QToolButton() for _ in range(5))
         self.place, self.value = QLabel(), QLabel()
         self.enlarged: SlicePane | None = None
         self._lay_out()
@@ -60,6 +62,9 @@ class SlicePanel(QFrame):
         for button in (self.light, self.lamps, self.whole, self.shut):
             button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
             head.addWidget(button)
+        # Not on the slices themselves: there it would lie over what one looks at.
+        _name(self.help, "What mouse and keys do in the slices", KEYS)
+        self.help.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         for button in (self.light, self.lamps):
             button.setCheckable(True)
         _name(
@@ -80,9 +85,12 @@ class SlicePanel(QFrame):
         bar.addWidget(self.window_row)
         column.addLayout(bar)
         for pane in self.panes:
-            pane.setToolTip(KEYS)
             column.addWidget(pane, 1)
-        column.addLayout(self._told())
+        below = QHBoxLayout()
+        below.setContentsMargins(8, 3, 8, 4)
+        below.addLayout(self._told(), 1)
+        below.addWidget(self.help)
+        column.addLayout(below)
         # What is told below has no least width of its own, so that it never pushes the picture.
         least = max(NARROWEST, NARROWEST_LINES * self.fontMetrics().height())
         self.setMinimumWidth(max(least, column.minimumSize().width()))
@@ -90,7 +98,6 @@ class SlicePanel(QFrame):
     def _told(self) -> QVBoxLayout:
         """Return the two lines below: where the cross-hair is, and what is there."""
         lines = QVBoxLayout()
-        lines.setContentsMargins(8, 3, 8, 4)
         lines.setSpacing(0)
         for label, name in ((self.place, "Place of the cross-hair"), (self.value, "Value at the cross-hair")):
             label.setAccessibleName(name)
@@ -113,6 +120,7 @@ class SlicePanel(QFrame):
         self.lamps.toggled.connect(self._show_lamps)
         self.whole.clicked.connect(self.state.show_whole)
         self.shut.clicked.connect(self.close_wanted)
+        self.help.clicked.connect(self._explain)
         for pane in self.panes:
             pane.enlarge_wanted.connect(lambda pane=pane: self.enlarge(None if self.enlarged else pane))
 
@@ -189,6 +197,10 @@ class SlicePanel(QFrame):
         for pane in self.panes:
             pane.set_lit(on)
 
+    def _explain(self) -> None:
+        """Say what mouse and keys do, for those who do not wait for a tooltip."""
+        QToolTip.showText(self.help.mapToGlobal(QPoint(0, 0)), KEYS, self.help)
+
     def close_threads(self) -> None:
         """Make nothing any more: the window closes."""
         self.slicer.close()
@@ -211,6 +223,8 @@ class SlicePanel(QFrame):
         super().showEvent(event)
         self._want_windows()
         self._fit()
+        if not event.spontaneous():
+            self.seen.emit()
 
     def hideEvent(self, event: QHideEvent) -> None:
         """Slice nothing that nobody sees."""
@@ -223,7 +237,7 @@ class SlicePanel(QFrame):
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
         for button, name in (
-            (self.light, "light"), (self.lamps, "lamp"), (self.whole, "fit"), (self.shut, "close"),
+            (self.light, "light"), (self.lamps, "lamp"), (self.whole, "fit"), (self.shut, "close"), (self.help, "info"),
         ):  # fmt: skip
             button.setIcon(icon(name, current_theme()))
         self.window_row.refresh_theme()
