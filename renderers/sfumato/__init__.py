@@ -8,6 +8,7 @@ How the house is built::
     gpu/          the only place that calls moderngl: device, textures, targets, programs
     shaders/lib/  GLSL by concept, included by name
     techniques/   one folder a technique; `marcher` (the one ray caster) and `sweep` beside them
+    slicing/      plane slices through a volume, with window and level
     reference/    slow, clear float64 versions that tests believe
     renderer.py   `Renderer`: a scene and a size in, a picture out, in pieces that can be cancelled
 

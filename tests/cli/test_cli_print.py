@@ -57,7 +57,9 @@ def test_orientation_cube(run, ball):
     y, x = np.nonzero(changed)
     assert max(x.max(), y.max()) < 80
     assert min(x.min(), y.min()) > 2
-    assert "--orientation-cube" in run("render", ball, "-o", "c.npy", "--orientation-cube", "--linear").failed_with(2)
+    assert "--orientation-cube" in run(
+        "render", ball, "-o", "c.npy", "--orientation-cube", "--linear"
+    ).failed_with(2)
 
 
 def test_wrong_use(run, ball):

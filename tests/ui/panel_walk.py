@@ -247,6 +247,23 @@ def walk_window(window: MainWindow, theme: str) -> list[str]:
     return wrong
 
 
+def walk_slices(window: MainWindow, theme: str) -> list[str]:
+    """Walk the slice views: all three, and one enlarged with a window of its own."""
+    window.slices.set_open(True)
+    panel = window.slices.panel
+    assert panel is not None
+    pause(0.3)
+    wrong = Walk(window, panel, f"{theme}, slices").check()
+    panel.enlarge(panel.panes[1])
+    QTest.keyClick(panel.panes[1], Qt.Key.Key_Right, Qt.KeyboardModifier.AltModifier)
+    QTest.keyClick(panel.panes[1], Qt.Key.Key_Plus)
+    wrong += Walk(window, panel, f"{theme}, one slice").check()
+    panel.enlarge(None)
+    panel.state.reset_window()
+    window.slices.set_open(False)
+    return wrong
+
+
 def dialogs(window: MainWindow, folder: Path) -> Iterator[QDialog]:
     """Yield the dialogs with typical contents."""
     raw = folder / "ball.raw"
@@ -310,6 +327,8 @@ def main(font_factor: float, folder: Path) -> None:
         for mode in ("wipe", "techniques", "rigs"):
             window.compare.set_mode(mode)
             wrong += Walk(window, window.centralWidget(), f"{theme}, compare by {mode}").check()
+        window.drawer.open("")
+        wrong += walk_slices(window, theme)
         window.drawer.open("history")
         for dialog in dialogs(window, folder):
             wrong += walk_dialog(dialog, theme)

@@ -47,7 +47,9 @@ def test_the_cube_is_switched_on_and_a_press_on_a_face_looks_at_it(
     camera = window.editor.scene.camera
     assert camera is not None
     # From a little above, the upper face is a strip at the cube's upper edge.
-    place = next(y for y in range(MARGIN, MARGIN + SIDE) if window.viewport.cube.face(camera, _at(y)) == "top")
+    place = next(
+        y for y in range(MARGIN, MARGIN + SIDE) if window.viewport.cube.face(camera, _at(y)) == "top"
+    )
     qtbot.mouseClick(window.viewport, LEFT, pos=QPoint(MARGIN + SIDE // 2, place + 1))
     assert len(window.editor.document.steps) == steps + 1
     turned = window.editor.scene.camera

@@ -161,6 +161,11 @@ class ToolStrip(QFrame):
         self.vtk = _explained(
             "VTK view", "VTK view beside the picture: pick lines, place seeds and regions", "vtk"
         )
+        self.slices = _explained(
+            "Slice views",
+            "Slice views beside the picture: axial, coronal, sagittal, with the lamps",
+            "slices",
+        )
         self.fit = _explained("Fit", "See the whole subject", "fit", checkable=False)
         column = QVBoxLayout(self)
         column.setContentsMargins(5, 8, 5, 8)
@@ -170,7 +175,7 @@ class ToolStrip(QFrame):
             button.clicked.connect(lambda _=False, name=name: self.choose(name))
             column.addWidget(button)
         column.addStretch(1)
-        for button in (self.vtk, self.fit):
+        for button in (self.slices, self.vtk, self.fit):
             button.setIconSize(QSize(22, 22))
             column.addWidget(button)
         self.choose("orbit")
@@ -185,9 +190,10 @@ class ToolStrip(QFrame):
 
     def buttons(self) -> list[QWidget]:
         """Return the buttons from top to bottom."""
-        return [*self.tools.values(), self.vtk, self.fit]
+        return [*self.tools.values(), self.slices, self.vtk, self.fit]
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
-        for name, button in (*self.tools.items(), ("vtk", self.vtk), ("fit", self.fit)):
+        layouts = (("slices", self.slices), ("vtk", self.vtk), ("fit", self.fit))
+        for name, button in (*self.tools.items(), *layouts):
             button.setIcon(icon(name, current_theme()))

@@ -51,6 +51,7 @@ _FIXED = (
     Command("history", "History", "Window", ("H",)),
     Command("compare", "Compare", "Window", ("K",)),
     Command("vtk", "VTK view", "Window", ("V",)),
+    Command("slices", "Slice views", "Window", ("M",)),
     Command("theme", "Other theme (dark or light)", "Window"),
     Command("tab-light", "Panel: Light", "Window", ("Alt+1",)),
     Command("tab-material", "Panel: Material", "Window", ("Alt+2",)),

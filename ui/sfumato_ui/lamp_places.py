@@ -94,10 +94,16 @@ def placed(scene: Scene, light: Light, x: float, y: float) -> dict[str, Any]:
         return {"tilt": nearest_possible_tilt(tilt, light.aperture), "rotation": rotation}
     basis = scene.camera.basis()
     towards = np.array([basis.right, basis.up, basis.back]).T @ light_moves.direction(tilt, rotation)
+    return pointed(scene, light, towards)
+
+
+def pointed(scene: Scene, light: Light, towards: np.ndarray) -> dict[str, Any]:
+    """Return the fields of a lamp that shines from a unit direction of the world, as far as its cone allows."""
     if light.placed:
         return turned(scene, light, towards)
-    patient = np.array([PATIENT_BASIS.right, PATIENT_BASIS.up, PATIENT_BASIS.back])
-    tilt, rotation = angles_of(patient @ towards)
+    seen = scene.camera.basis() if scene.camera is not None else PATIENT_BASIS
+    basis = seen if light.attached == "viewer" else PATIENT_BASIS
+    tilt, rotation = angles_of(np.array([basis.right, basis.up, basis.back]) @ towards)
     return {"tilt": nearest_possible_tilt(tilt, light.aperture), "rotation": rotation}
 
 
@@ -245,6 +251,7 @@ __all__ = [
     "offered_kinds",
     "place_words",
     "placed",
+    "pointed",
     "seen_angles",
     "turned",
     "within_reach",

@@ -38,7 +38,7 @@ def draw_centred(painter: QPainter, area: QRect, text: str) -> None:
 
 
 def draw_letters(painter: QPainter, area: QRect, letters: dict[str, str] | None) -> None:
-    """Name the patient's sides at the picture's edges, or say that they are not known."""
+    """Name the patient's sides at the picture's edges, or say that they are not known; an edge may have no name."""
     metrics = painter.fontMetrics()
     side = metrics.height() + 4
     if letters is None:
@@ -52,7 +52,8 @@ def draw_letters(painter: QPainter, area: QRect, letters: dict[str, str] | None)
         "left": (area.left() + 8, y - side / 2), "right": (area.right() - side - 7, y - side / 2),
         "top": (x - side / 2, area.top() + 8), "bottom": (x - side / 2, area.bottom() - side - 7),
     }.items():  # fmt: skip
-        draw_text(painter, QRectF(left, top, side, side), letters[edge])
+        if edge in letters:
+            draw_text(painter, QRectF(left, top, side, side), letters[edge])
 
 
 def draw_hint(painter: QPainter, area: QRect, text: str) -> None:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from qtpy.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import (
     QColor,
@@ -39,6 +40,7 @@ from .orientation import OrientationCube
 from .settings import settings
 from .shadow_audit import words_of
 from .shadow_floor import badge_of
+from .slice_views.painting import draw_marker
 from .subject import is_open, size_of
 from .theme import DARK, PICTURE_GREY
 from .tools import ClipTool, HandleTool, LightTool, PickTool, PictureView, ShadowBar, ShadowTool
@@ -88,6 +90,8 @@ class Viewport(QWidget):
         }
         self.shadow_bar = ShadowBar(editor, shadow)
         self.hint = ""
+        #: Where the cross-hair of the slice views is, world mm.
+        self._mark: np.ndarray | None = None
         #: Whether an orthographic picture has a bar of true length.
         self.scale_bar = bool(settings().value(SCALE_BAR, False, type=bool))
         self.cube = OrientationCube()
@@ -189,6 +193,11 @@ class Viewport(QWidget):
         self.hint = text
         self.update()
 
+    def set_mark(self, point: np.ndarray | None) -> None:
+        """Mark a world point over the picture, or none; no export has it."""
+        self._mark = point
+        self.update()
+
     def set_scale_bar(self, on: bool) -> None:
         """Show a scale bar in orthographic pictures, and remember it."""
         self.scale_bar = on
@@ -224,6 +233,9 @@ class Viewport(QWidget):
         if self.cube.on and is_open(scene) and scene.camera is not None:
             known = scene.volume is None or scene.volume.info.orientation_known
             self.cube.paint(painter, scene.camera, known, self.devicePixelRatioF())
+        view = self.view
+        if self._mark is not None and view is not None:
+            draw_marker(painter, view, self._mark)
         self._paint_tool(painter)
         if self.hint and self._tool == "orbit" and scene.volume is not None:
             overlay.draw_hint(painter, self.rect(), self.hint)

@@ -41,6 +41,7 @@ from .panels.view import ViewPage
 from .recent_pictures import RecentPictures
 from .recovery import Recovery
 from .settings import settings
+from .slice_views.layout import SliceLayout
 from .status import StatusLine
 from .tab_order import set_tab_order
 from .theme import apply_theme
@@ -94,6 +95,7 @@ class MainWindow(QMainWindow):
         self.turntable = Turntable(self.editor, self)
         self.views = QSplitter(Qt.Orientation.Horizontal)
         self.vtk = VtkLayout(self.views, self.editor, self.messages)
+        self.slices = SliceLayout(self.views, self.editor, self.viewport)
         self.autosave = Autosave(self.editor, self.files.identify, self)
         self.recent_pictures = RecentPictures(self.viewport, self.files.path)
         self.recovery = Recovery(self.messages, self.files.recover)
@@ -165,6 +167,10 @@ class MainWindow(QMainWindow):
         self.strip.vtk.toggled.connect(self.vtk.set_open)
         self.vtk.changed.connect(self.strip.vtk.setChecked)
         self.vtk.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
+        self.strip.slices.toggled.connect(self.slices.set_open)
+        self.slices.changed.connect(self.strip.slices.setChecked)
+        self.slices.rebuilt.connect(lambda: set_tab_order(self.centralWidget()))
+        self.viewport.pick_tool.picked.changed.connect(lambda found: self.slices.go_to(found.point))
         self.vtk.trace_wanted.connect(self.files.trace)
         self.view_page.shapes.trace_wanted.connect(self.files.trace)
         self.view_page.view_chosen.connect(self.look)
@@ -219,6 +225,7 @@ class MainWindow(QMainWindow):
         self.panel.currentChanged.connect(lambda tab: settings().setValue("panel/tab", tab))
         if not kept.value("hint/light_seen", False, type=bool):
             self.viewport.set_hint(HINT)
+        self.slices.restore()
 
     # -- showing ----------------------------------------------------------------------------------
     def _show_document(self) -> None:
@@ -248,6 +255,7 @@ class MainWindow(QMainWindow):
             self.messages,
             self.viewport.shadow_bar,
             self.vtk,
+            self.slices,
             self.light_page,
             self.material_page,
             self.view_page,
@@ -359,6 +367,7 @@ class MainWindow(QMainWindow):
         self.hide()
         self.turntable.end()
         self.vtk.close()
+        self.slices.close()
         self.driver.stop()
         self.recovery.close()
         self.autosave.close()

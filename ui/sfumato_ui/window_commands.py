@@ -32,6 +32,7 @@ def window_commands(window: MainWindow) -> Commands:
         "history": lambda: window.drawer.toggle("history"),
         "compare": lambda: window.drawer.toggle("compare"),
         "vtk": window.strip.vtk.toggle,
+        "slices": window.strip.slices.toggle,
         "exposure": window.exposure.ask,
         "audit": window.light_page.audit.on.toggle,
         "theme": lambda: window.set_theme(_other_theme()),

@@ -262,10 +262,24 @@ def _view_more(hand: Hand) -> None:
     hand.rest()
 
 
+def _slices(hand: Hand) -> None:
+    """Show the slices and move the cross-hair in the axial one."""
+    hand.choose_tab(0)
+    hand.window.viewport.setFocus()
+    hand.press(Qt.Key.Key_M)
+    panel = hand.window.slices.panel
+    assert panel is not None
+    hand.wait_until(lambda: all(pane.made is not None for pane in panel.panes), "slices")
+    pane = panel.panes[0]
+    hand.click(pane, QPoint(round(0.53 * pane.width()), round(0.56 * pane.height())))
+    hand.rest()
+    hand.wait_until(lambda: panel.slicer.idle, "slices")
+
+
 # -- files -----------------------------------------------------------------------------------------
 def _open_menu(hand: Hand) -> None:
     """Open the menu; its own loop of events must not keep us."""
-    hand.choose_tab(0)
+    hand.click(hand.window.strip.slices)
     hand.rest()
     menu = hand.window.top.open.menu()
     menu.popup(hand.window.top.open.mapToGlobal(hand.window.top.open.rect().bottomLeft()))
@@ -375,6 +389,7 @@ WALK: tuple[Step, ...] = (
     ("clip-plane", "A clip plane, moved by its handle", _clip_plane),
     ("crop", "The crop box, moved by its handle", _crop),
     ("view-more", "Quality, sampling and theme", _view_more),
+    ("slices", "Slice views beside the picture, with the lamps in them", _slices),
     ("open-menu", "Open: files, folders, recent ones, samples", _open_menu),
     ("export", "Export for print", _export),
     ("exporting", "The export tells how far it is", _exporting),

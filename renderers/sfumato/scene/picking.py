@@ -130,11 +130,11 @@ def light_depths(scene: Scene, points: np.ndarray, towards: np.ndarray) -> np.nd
     step = STEP_VOXELS * volume.min_spacing
     ways = step * (np.arange(round(SKIN_VOXELS / STEP_VOXELS)) + 0.5)
     along = (points[:, None] + ways[:, None] * np.asarray(towards)).reshape(-1, 3)
-    extinction = np.where(_is_shown(scene, volume, along), _extinction_at(scene, volume, along), 0)
+    extinction = np.where(is_shown(scene, volume, along), _extinction_at(scene, volume, along), 0)
     return np.asarray(extinction.reshape(len(points), -1).sum(axis=1) * step)
 
 
-def _is_shown(scene: Scene, volume: Volume, points: np.ndarray) -> np.ndarray:
+def is_shown(scene: Scene, volume: Volume, points: np.ndarray) -> np.ndarray:
     """Tell of world points (n, 3) whether they are inside crop box and clip planes."""
     shown = np.ones(len(points), dtype=bool)
     for normal, least in _half_spaces(scene, volume):
@@ -258,6 +258,7 @@ def _trilinear(data: np.ndarray, index: np.ndarray) -> np.ndarray:
 
 __all__ = [
     "Found",
+    "is_shown",
     "light_depths",
     "material_under",
     "ray_samples",

@@ -31,7 +31,9 @@ def work(tmp_path: Path) -> None:
     (tmp_path / "work").mkdir(exist_ok=True)
 
 
-@pytest.mark.parametrize("now", ["work/a.npy", "work/deeper/a.npy", "work/b.npy", "other/a.npy", "other/b.npy"])
+@pytest.mark.parametrize(
+    "now", ["work/a.npy", "work/deeper/a.npy", "work/b.npy", "other/a.npy", "other/b.npy"]
+)
 def test_it_is_found_where_it_is_now(kept: Path, tmp_path: Path, now: str) -> None:
     for k in range(3):  # others of its kind, and another of its name
         volume_file(tmp_path / "work" / f"{k}.npy", 7 + k)

@@ -69,7 +69,9 @@ class ViewPage(Page):
         self.turntable.setCheckable(True)
         self.turntable.setProperty("compact", True)
         explain(
-            self.turntable, "Let the subject turn, once around in 12 s; the next press or key ends it", "turntable"
+            self.turntable,
+            "Let the subject turn, once around in 12 s; the next press or key ends it",
+            "turntable",
         )
         self.bookmarks = BookmarkButton(editor)
         self.lens = slider_for(fields_of(Camera)["view_angle"], "Camera.view_angle")
@@ -97,7 +99,9 @@ class ViewPage(Page):
         self.scale_bar.setChecked(bool(settings().value("view/scale_bar", False, type=bool)))
         self.cube = QCheckBox("Orientation cube")
         explain(
-            self.cube, "A cube, upper left, whose faces name the patient's sides; a press on one looks at it", "cube"
+            self.cube,
+            "A cube, upper left, whose faces name the patient's sides; a press on one looks at it",
+            "cube",
         )
         self.cube.setChecked(cube_wanted())
         # Without clip planes all of it fits into a window of 1280 x 720.

@@ -229,12 +229,13 @@ def draw_guide(painter: QPainter, view: PictureView) -> None:
 
 
 def draw_lamp(
-    painter: QPainter, view: PictureView, at: Place, light: Light, *, on: bool, selected: bool, hot: bool
-) -> None:
+    painter: QPainter, view: PictureView, at: Place, light: Light, *, on: bool, selected: bool, hot: bool,
+    spoke: bool = True,
+) -> None:  # fmt: skip
     """Draw a lamp in its colour, crossed out if it does not shine, with a spoke and a ring if it is selected."""
     size = 11.0 if hot else 9.0
     if selected:
-        if not light.placed:
+        if spoke and not light.placed:
             draw_line(painter, (view.width / 2, view.height / 2), at)
         painter.setBrush(QColor(0, 0, 0, 110))
         painter.setPen(QPen(QColor(DARK.accent), 2.5))

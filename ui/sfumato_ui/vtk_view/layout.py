@@ -6,6 +6,7 @@ from qtpy.QtCore import QObject, Qt, Signal
 from qtpy.QtGui import QCloseEvent
 from qtpy.QtWidgets import QSplitter, QVBoxLayout, QWidget
 
+from ..docking import dock
 from ..editing import Editor
 from ..messages import MessageBar
 from .panel import VtkPanel
@@ -69,8 +70,7 @@ class VtkLayout(QObject):
         self.panel = panel
         if docked:
             self._splitter.addWidget(panel)
-            half = self._splitter.width() // 2
-            self._splitter.setSizes([half, half])
+            dock(self._splitter, panel, 0.5)
         else:
             self.floating = _Floating(self._splitter.window(), panel)
             self.floating.closed.connect(lambda: self.set_open(False))
