@@ -52,6 +52,7 @@ class TopBar(QFrame):
         super().__init__()
         self.setObjectName("TopBar")
         self._editor = editor
+        self._said: tuple[object, ...] = ()
         self.open = tool_button("Open", "", text="Open")
         explain(self.open, "Open a volume, a folder or a scene", "open")
         self.open.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
@@ -103,15 +104,18 @@ class TopBar(QFrame):
         return menu
 
     def refresh(self) -> None:
-        """Say what can be undone."""
-        document = self._editor.document
+        """Say what can be undone, if that is other than what is said already: drags come here at each move."""
+        document, opened = self._editor.document, is_open(self._editor.scene)
+        said = (document.undo_label, document.redo_label, opened)
+        if said == self._said:
+            return
+        self._said = said
         for button, word, label in (
             (self.undo, "Undo", document.undo_label),
             (self.redo, "Redo", document.redo_label),
         ):
             button.setEnabled(bool(label))
             explain(button, f"{word}: {label}" if label else f"Nothing to {word.lower()}", word.lower())
-        opened = is_open(self._editor.scene)
         for button in (self.save, self.before, self.picture):
             button.setEnabled(opened)
 

@@ -239,9 +239,12 @@ class MainWindow(QMainWindow):
         self.driver.ask()
 
     def _show_title(self) -> None:
-        name = self.files.name
-        self.setWindowTitle(f"{name}[*] – Sfumato" if name else "Sfumato[*]")
-        self.setWindowModified(self.editor.document.modified)
+        name, modified = self.files.name, self.editor.document.modified
+        title = f"{name}[*] – Sfumato" if name else "Sfumato[*]"
+        # Windows' titles are dear to set, and drags come here at each move.
+        if (title, modified) != (self.windowTitle(), self.isWindowModified()):
+            self.setWindowTitle(title)
+            self.setWindowModified(modified)
 
     def set_theme(self, name: str) -> None:
         """Show the window in another theme, and remember it."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from .volume import Volume
 
-#: Width in bins by which counts are smoothed, and how far a peak rises above its surroundings, in the counts' logarithm.
+#: Width in bins by which counts are smoothed, and how far a peak rises above what is around, in the counts' logarithm.
 SMOOTH, RISE = 2.0, 0.25
 #: Most peaks.
 MOST = 12

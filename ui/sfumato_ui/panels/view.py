@@ -45,6 +45,12 @@ BACKGROUNDS = {
 }
 
 
+#: Fields of the scene that the page shows, but for the camera.
+SHOWN = (
+    "volume", "geometry", "clip", "crop", "exposure", "white_balance", "tone_curve", "step", "background"
+)  # fmt: skip
+
+
 class ViewPage(Page):
     """From where, through which lens, how bright, on what."""
 
@@ -206,7 +212,7 @@ class ViewPage(Page):
         self.cube.toggled.connect(self.cube_chosen)
         self.quality.activated.connect(self._choose_quality)
         self.theme.activated.connect(lambda i: self.theme_chosen.emit(self.theme.itemData(i)))
-        editor.changed.connect(lambda old, new: self.refresh())
+        editor.changed.connect(self._on_changed)
 
     # -- edits and showing ------------------------------------------------------------------------
     def _choose_quality(self, index: int) -> None:
@@ -230,6 +236,14 @@ class ViewPage(Page):
             self._editor.change("Change the lens", not self.lens.slider.isSliderDown(), camera=changed)
         self.refresh()
 
+    def _on_changed(self, old: Scene, new: Scene) -> None:
+        """Show what is other than before: a drag of camera or lamp must not wait for the rest of the page."""
+        # As tuples: what is the same object is not compared further.
+        if tuple(getattr(old, name) for name in SHOWN) != tuple(getattr(new, name) for name in SHOWN):
+            self.refresh()
+        elif _lens_of(old.camera) != _lens_of(new.camera):
+            self._show_camera(new.camera)
+
     def refresh(self) -> None:
         """Show the scene's values."""
         scene = self._editor.scene
@@ -244,7 +258,9 @@ class ViewPage(Page):
         for button, color in zip(self.background, BACKGROUNDS.values(), strict=True):
             button.setChecked(color == scene.background)
         self.theme.setCurrentIndex(self.theme.findData(current_theme().name, Qt.ItemDataRole.UserRole))
-        camera = scene.camera
+        self._show_camera(scene.camera)
+
+    def _show_camera(self, camera: Camera | None) -> None:
         for widget in (self.views, self.parallel, self.turntable, self.bookmarks, self.lens):
             widget.setEnabled(camera is not None)
         if camera is not None:
@@ -260,6 +276,11 @@ class ViewPage(Page):
             if orthographic
             else "Needs an orthographic view: in perspective, what is nearer is larger"
         )
+
+
+def _lens_of(camera: Camera | None) -> tuple[bool, float] | None:
+    """Return what the page shows of a camera."""
+    return None if camera is None else (camera.parallel_projection, camera.view_angle)
 
 
 def _side_by_side(*boxes: QWidget) -> QWidget:
