@@ -14,7 +14,8 @@ from .volume_texture import VolumeTexture
 
 #: Entries over the value range: one per Hounsfield unit of a usual CT.
 ENTRIES = 4096
-ENTRIES_2D = 256
+#: Of a function of the gradient too, over the values and over the gradient magnitude.
+ENTRIES_2D = (1024, 128)
 
 
 @dataclass
@@ -24,7 +25,7 @@ class TransferTables:
     Attributes
     ----------
     color : texture
-        1D: integral of (tau * colour, tau); 2D: (tau * colour, tau) over value and gradient magnitude.
+        1D: integral of (tau * colour, tau); 2D: the same for each gradient magnitude (rows).
     emission : texture
         The same of tau * emission.
     extinction : texture
@@ -80,22 +81,19 @@ def _tables_2d(
     device: Device, volume: Volume, texture: VolumeTexture, transfer: TransferFunction
 ) -> TransferTables:
     low, high = texture.domain
-    top = max(
-        max((g for _, g in r.points), default=0.0) if r.shape == "polygon" else r.gradient[1]
-        for r in transfer.regions
-    )
-    top = max(top, 1e-9)
-    values = np.linspace(low, high, ENTRIES_2D)[None, :]
+    top = max(max(r.extent[1][1] for r in transfer.regions), 1e-9)
+    across, up = ENTRIES_2D
+    values = np.linspace(low, high, across)[None, :]
     # Square root spacing: most voxels have small gradients.
-    gradients = (np.linspace(0, 1, ENTRIES_2D) ** 2 * top)[:, None]
+    gradients = (np.linspace(0, 1, up) ** 2 * top)[:, None]
     sampled = transfer.evaluate_2d(values, gradients)
     tau = transfer.extinction(sampled[..., 3], volume.unit_distance)[..., None]
-    color = np.concatenate([sampled[..., :3] * tau, tau], axis=-1).astype(np.float32)
-    emission = np.concatenate([sampled[..., 4:] * tau, tau], axis=-1).astype(np.float32)
-    visible = (
-        np.interp(np.linspace(0, 1, ENTRIES), np.linspace(0, 1, ENTRIES_2D), (tau[..., 0] > 0).any(axis=0))
-        > 0
+    color, emission = (
+        np.stack([_integral(row) for row in np.concatenate([part * tau, tau], axis=-1)])
+        for part in (sampled[..., :3], sampled[..., 4:])
     )
+    seen = (tau[..., 0] > 0).any(axis=0)
+    visible = np.interp(np.linspace(0, 1, ENTRIES), np.linspace(0, 1, across), seen) > 0
     textures = [_upload(device, table) for table in (color, emission)]
     emits = bool((sampled[..., 4:] * tau).any())
     extinction = _upload(device, np.zeros((1, 2, 1), dtype=np.float32))

@@ -12,7 +12,8 @@ from .light import Light, nearest_possible_tilt, tilt_is_possible
 from .params import Field, Param, fields_of
 from .paths import parse_setting
 from .scene import MAX_LIGHTS, Scene, TechniqueParams
-from .transfer import MAX_OPACITY, Region, TransferFunction, TransferPoint
+from .region import Region
+from .transfer import MAX_OPACITY, TransferFunction, TransferPoint
 from .volume import Volume, VolumeInfo
 
 __all__ = [

@@ -60,12 +60,15 @@ class Found:
     value : float
         Median of the values that are seen, weighted by how much of the picture they make; the volume's unit.
     opacity : float
-        What the transfer function gives this value (and the gradient at the point), per unit distance; 0 to 1.
+        What the transfer function gives this value (and gradient), per unit distance; 0 to 1.
+    gradient : float
+        Gradient magnitude where the ray meets that value, value per mm.
     """
 
     point: Vec3
     value: float
     opacity: float
+    gradient: float = 0.0
 
 
 def material_under(scene: Scene, x: float, y: float, aspect: float) -> Found | None:
@@ -76,14 +79,13 @@ def material_under(scene: Scene, x: float, y: float, aspect: float) -> Found | N
         return None
     values = _values_at(scene.volume, points)
     order = np.argsort(values)
-    value = float(values[order[_half_of(seen[order])]])
-    point = points[_half_of(seen)]
-    if scene.transfer.regions:
-        steepness = np.linalg.norm(value_gradient(scene, point[None]), axis=1)
-        opacity = scene.transfer.evaluate_2d(np.array([value]), steepness)[0, 3]
-    else:
-        opacity = scene.transfer.evaluate(np.array([value]))[0, 3]
-    return Found((float(point[0]), float(point[1]), float(point[2])), value, float(opacity))
+    # One sample tells value and gradient: of two, the pair might lie beside what is seen.
+    sample = order[_half_of(seen[order])]
+    value, point = float(values[sample]), points[_half_of(seen)]
+    steepness = np.linalg.norm(value_gradient(scene, points[sample : sample + 1]), axis=1)
+    opacity = scene.transfer.evaluate_2d(np.array([value]), steepness)[0, 3]
+    place = float(point[0]), float(point[1]), float(point[2])
+    return Found(place, value, float(opacity), float(steepness[0]))
 
 
 def _half_of(weights: np.ndarray) -> int:

@@ -36,11 +36,7 @@ def _coarse_mask(volume: Volume, transfer: TransferFunction) -> np.ndarray:
     """Return which cells of a coarse grid, shape (z, y, x), show something."""
     low, high = volume.value_range
     table = np.linspace(low, high, 4096)
-    opacity = (
-        transfer.evaluate_2d(table, np.zeros(1))[..., 3]
-        if transfer.regions
-        else transfer.evaluate(table)[:, 3]
-    )
+    opacity = transfer.most_opaque(table)[:, 3]
     data = volume.data
     scale = 4095 / (high - low) if high > low else 0.0
     steps = tuple(max(1, n // (2 * CELLS)) for n in data.shape)

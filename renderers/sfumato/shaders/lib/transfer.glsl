@@ -4,16 +4,23 @@
 uniform float u_table_size;          // entries of the tables
 
 #ifdef TRANSFER_2D
-uniform sampler2D u_table2d;         // value x gradient magnitude: (tau * colour, tau), tau per mm
-uniform sampler2D u_emission2d;      // tau * emission
-uniform float u_gradient_scale;      // 1 / the gradient magnitude (normalised value per mm) at the table's end
+uniform sampler2D u_table2d;         // integral of (tau * colour, tau) over the normalised value, a row a gradient magnitude
+uniform sampler2D u_emission2d;      // the same of tau * emission
+uniform float u_gradient_scale;      // 1 / the gradient magnitude (normalised value per mm) at the last row
 
-vec2 table2d_at(float s0, float s1, float gradient) {
-    return vec2(0.5 * (s0 + s1), clamp(sqrt(gradient * u_gradient_scale), 0.0, 1.0));
+// The values are rounded to the table's entries, as those of one-dimensional functions are; rows are interpolated.
+vec4 integral_slope(sampler2D table, float s0, float s1, float gradient) {
+    float last = u_table_size - 1.0, rows = float(textureSize(table, 0).y);
+    float k0 = floor(s0 * last + 0.5), k1 = floor(s1 * last + 0.5);
+    if (k0 == k1) { k0 = max(k0 - 1.0, 0.0); k1 = min(k1 + 1.0, last); }
+    float row = (sqrt(clamp(gradient * u_gradient_scale, 0.0, 1.0)) * (rows - 1.0) + 0.5) / rows;
+    vec4 change = textureLod(table, vec2((k1 + 0.5) / u_table_size, row), 0.0)
+        - textureLod(table, vec2((k0 + 0.5) / u_table_size, row), 0.0);
+    return max(change * (last / (k1 - k0)), 0.0);
 }
 // Mean extinction per mm (a) and extinction times colour (rgb) between two values.
-vec4 classify(float s0, float s1, float gradient) { return textureLod(u_table2d, table2d_at(s0, s1, gradient), 0.0); }
-vec3 classify_emission(float s0, float s1, float gradient) { return textureLod(u_emission2d, table2d_at(s0, s1, gradient), 0.0).rgb; }
+vec4 classify(float s0, float s1, float gradient) { return integral_slope(u_table2d, s0, s1, gradient); }
+vec3 classify_emission(float s0, float s1, float gradient) { return integral_slope(u_emission2d, s0, s1, gradient).rgb; }
 float classify_extinction(float s0, float s1) { return classify(s0, s1, 0.0).a; }
 #else
 uniform sampler2D u_integral;        // integral of (tau * colour, tau) over the normalised value

@@ -27,21 +27,11 @@ def looks(transfer: TransferFunction, domain: tuple[float, float]) -> np.ndarray
     Of a two-dimensional function, each value's most opaque gradient counts.
     """
     values = np.linspace(*domain, ENTRIES)
-    if transfer.regions:
-        gradients = np.linspace(0, max(_steepest(transfer), 1e-9), 33)
-        sampled = transfer.evaluate_2d(values[:, None], gradients[None])
-        sampled = sampled[np.arange(ENTRIES), sampled[..., 3].argmax(axis=1)]
-    else:
-        sampled = transfer.evaluate(values)
+    sampled = transfer.most_opaque(values)
     alpha = sampled[:, 3:4]
     light = alpha * (sampled[:, :3] + sampled[:, 4:])
     shown = [cielab(np.minimum(light + (1 - alpha) * back, 1)) for back in (0, 1)]
     return np.concatenate(shown, axis=1).astype(np.float32)
-
-
-def _steepest(transfer: TransferFunction) -> float:
-    ends = [g for r in transfer.regions for g in (*r.gradient, *(g for _, g in r.points))]
-    return float(max(ends))
 
 
 def errors(pyramid: Pyramid, wanted: np.ndarray, look: np.ndarray) -> np.ndarray:
