@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QPoint, QSize, Signal
+from qtpy.QtCore import QPoint, QSize, Qt, Signal
 from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QAbstractSpinBox, QColorDialog, QPushButton
 
@@ -87,5 +87,6 @@ class ColorButton(QPushButton):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(QPen(QColor(current_theme().border), 1))
-        painter.setBrush(to_srgb(self._color))
+        # What cannot be chosen has no colour of its own to show.
+        painter.setBrush(to_srgb(self._color) if self.isEnabled() else Qt.BrushStyle.NoBrush)
         painter.drawRoundedRect(self.rect().adjusted(6, 6, -7, -7), 3, 3)

@@ -24,6 +24,8 @@ _GLYPHS = {
     "flip": "ph.arrows-left-right",
     "add": "ph.plus",
     "duplicate": "ph.copy",
+    "over": "ph.arrow-up",
+    "under": "ph.arrow-down",
     "remove": "ph.trash",
     "rename": "ph.pencil-simple",
     "mute": "ph.eye-slash",

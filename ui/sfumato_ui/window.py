@@ -292,7 +292,7 @@ class MainWindow(QMainWindow):
     def _show_material(self, found: Found) -> None:
         """Show where a material that was picked lies in the function."""
         self.panel.setCurrentWidget(self.material_page)
-        self.material_page.transfer.plot.pick(found.value)
+        self.material_page.transfer.pick(found)
 
     def _show_building(self, done: float, text: str) -> None:
         """Tell how far meshes are, unless the bar tells of an error or asks something."""

@@ -16,12 +16,14 @@ from .volume import Volume
 
 #: Voxels that are looked at: of larger volumes every second, every third, … along each axis.
 BUDGET = 4_000_000
+#: The same for a first look.
+GLANCE = 40_000
 #: Bins over the values and over the gradient magnitude.
 BINS = (256, 192)
 #: Bins of the first, fine count, of which several become one.
 _FINE = 4096
 #: Share of the voxels that may be steeper than what is worth seeing.
-OUTSIDE = 2e-4
+OUTSIDE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +92,23 @@ def sampled(
     for z, z_before, z_after in zip(chosen[0], before[0], after[0], strict=True):
         if stop():
             return
-        plane = volume.data[z].astype(np.float32)
-        along_z = volume.data[z_after][y, x].astype(np.float32) - volume.data[z_before][y, x]
-        along_y = plane[np.ix_(after[1], chosen[2])] - plane[np.ix_(before[1], chosen[2])]
-        along_x = plane[np.ix_(chosen[1], after[2])] - plane[np.ix_(chosen[1], before[2])]
+        plane = volume.data[z]
+        along_z = _difference(volume.data[z_after][y, x], volume.data[z_before][y, x])
+        along_y = _difference(plane[np.ix_(after[1], chosen[2])], plane[np.ix_(before[1], chosen[2])])
+        along_x = _difference(plane[np.ix_(chosen[1], after[2])], plane[np.ix_(chosen[1], before[2])])
         gradient = np.hypot(np.hypot(along_x / x_mm, along_y / y_mm), along_z / z_mm)
-        yield plane[y, x].ravel(), gradient.ravel()
+        yield plane[y, x].astype(np.float32).ravel(), gradient.ravel()
+
+
+def _difference(after: np.ndarray, before: np.ndarray) -> np.ndarray:
+    return np.asarray(after.astype(np.float32) - before)
+
+
+def first_look(volume: Volume) -> JointHistogram:
+    """Count so few of a volume's voxels that nobody waits for it; the same volume always has the same."""
+    counted = _count(volume, lambda: False, GLANCE)
+    assert counted is not None
+    return counted
 
 
 _kept: WeakKeyDictionary[Volume, JointHistogram] = WeakKeyDictionary()
@@ -128,14 +141,16 @@ def _count(volume: Volume, stop: Callable[[], bool], budget: int) -> JointHistog
         across = int(np.ceil((high - low + 1) / per_bin))
         low, high = low - 0.5, low - 0.5 + per_bin * across
     bound = max(steepest_possible(volume), 1e-9)
-    fine = np.zeros((_FINE, across), dtype=np.int64)
-    steepest = 0.0
+    bins, steepest = [], 0.0
     for values, gradients in sampled(volume, budget, stop):
-        columns = np.clip((values - low) * (across / (high - low)), 0, across - 1).astype(np.int64)
-        rows = np.clip(gradients * (_FINE / bound), 0, _FINE - 1).astype(np.int64)
-        fine += np.bincount(rows * across + columns, minlength=fine.size).reshape(fine.shape)
+        columns = np.clip((values - low) * (across / (high - low)), 0, across - 1).astype(np.int32)
+        rows = np.clip(gradients * (_FINE / bound), 0, _FINE - 1).astype(np.int32)
+        bins.append(rows * across + columns)
         steepest = max(steepest, float(gradients.max(initial=0)))
-    return None if stop() else _gathered(fine, (low, high), bound, up, steepest)
+    if stop():
+        return None
+    fine = np.bincount(np.concatenate(bins), minlength=_FINE * across).reshape(_FINE, across)
+    return _gathered(fine, (low, high), bound, up, steepest)
 
 
 def _gathered(
@@ -154,4 +169,4 @@ def _gathered(
     return JointHistogram(counts, values, (0.0, used * bound / _FINE), steepest)
 
 
-__all__ = ["JointHistogram", "joint_histogram", "known_histogram", "sampled", "steepest_possible"]
+__all__ = ["JointHistogram", "first_look", "joint_histogram", "known_histogram", "sampled", "steepest_possible"]

@@ -49,9 +49,9 @@ class MaterialPage(Page):
         self._make_sliders()
         for widget in (self.bar, self.ask, self.presets, self.density, self.transfer, self.more):
             self.add(widget)
-        self.more.add(self.level)
-        self.more.add(self.width_of_all)
-        self.more.add(self.transfer.glow)
+        shapes = self.transfer.shapes
+        for widget in (shapes.extents, shapes.glow, self.level, self.width_of_all, self.transfer.glow):
+            self.more.add(widget)
         self.finish()
         self._connect()
         self.refresh()
@@ -63,11 +63,11 @@ class MaterialPage(Page):
             tip="How much light each millimetre stops: thin shows what is inside, dense the surface",
         )  # fmt: skip
         self.level = LabelledSlider(
-            "Shift of all points", ((-100.0, 100.0),), 0.0, unit="%", decimals=1, limits=(-1000, 1000),
+            "Shift of all", ((-100.0, 100.0),), 0.0, unit="%", decimals=1, limits=(-1000, 1000),
             tip="Moves the whole function along the values, in parts of the volume's range",
         )  # fmt: skip
         self.width_of_all = LabelledSlider(
-            "Width of all points", ((0.1, 10.0),), 1.0, unit="×", decimals=2, step=0.02, limits=(0.01, 100),
+            "Width of all", ((0.1, 10.0),), 1.0, unit="×", decimals=2, step=0.02, limits=(0.01, 100),
             log=True, tip="Stretches the whole function about its middle",
         )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The plot with its heading, and the selected point in typed numbers."""
+"""The plots of one dimension and two with their heading and switch, and the selected point in typed numbers."""
 
 from __future__ import annotations
 
@@ -8,17 +8,22 @@ from qtpy.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QToolButton, QVBoxL
 
 from sfumato import Scene
 from sfumato.scene import transfer_edit
+from sfumato.scene.picking import Found
 
 from ..color_button import ColorButton
 from ..editing import Editor
 from ..icons import icon
 from ..sliders import LabelledSlider, NumberBox
 from ..theme import TARGET, current_theme
+from .dimensions import Dimensions
 from .plot import TransferPlot
+from .region_editor import RegionEditor
+
+TITLES = ("Values and opacity", "Values and gradients")
 
 
 class TransferEditor(QWidget):
-    """Edits the scene's transfer function, point by point or as a whole."""
+    """Edits the scene's transfer function, point by point, shape by shape, or as a whole."""
 
     #: The user wants the preset's function back.
     reset_wanted = Signal()
@@ -27,6 +32,8 @@ class TransferEditor(QWidget):
         super().__init__()
         self._editor = editor
         self.plot = TransferPlot(editor)
+        self.shapes = RegionEditor(editor, self.plot)
+        self.dimensions = Dimensions(editor)
         self.reset = _tool("Reset the function")
         self.value = _number("Value of the point", "Type the point's value")
         self.opacity = _number("Opacity of the point in %", "Type the point's opacity, per unit distance")
@@ -46,15 +53,19 @@ class TransferEditor(QWidget):
 
     # -- building ---------------------------------------------------------------------------------
     def _lay_out(self) -> None:
-        heading = QLabel("Values and opacity")
-        heading.setProperty("heading", True)
+        self.heading = QLabel(TITLES[0])
+        self.heading.setProperty("heading", True)
         top = QHBoxLayout()
-        top.addWidget(heading, 1)
+        top.setSpacing(4)
+        top.addWidget(self.heading, 1)
+        top.addWidget(self.dimensions)
         top.addWidget(self.reset)
         keep = self.reset.sizePolicy()
         keep.setRetainSizeWhenHidden(True)
         self.reset.setSizePolicy(keep)
-        point = QGridLayout()
+        self.point = QWidget()
+        point = QGridLayout(self.point)
+        point.setContentsMargins(0, 0, 0, 0)
         point.setHorizontalSpacing(6)
         point.setVerticalSpacing(2)
         for column, (text, widget) in enumerate(
@@ -73,7 +84,8 @@ class TransferEditor(QWidget):
         column_of_all.setSpacing(4)
         column_of_all.addLayout(top)
         column_of_all.addWidget(self.plot)
-        column_of_all.addLayout(point)
+        column_of_all.addWidget(self.point)
+        column_of_all.addWidget(self.shapes)
 
     def _connect(self) -> None:
         plot = self.plot
@@ -114,9 +126,22 @@ class TransferEditor(QWidget):
             Whether it differs from that.
         """
         self.plot.show_scene(scene)
+        self.shapes.show_scene(scene)
+        self.dimensions.show_scene(scene)
+        two = self.dimensions.two
+        self.heading.setText(TITLES[two])
+        for widget, shown in ((self.plot, not two), (self.point, not two), (self.shapes, two)):
+            widget.setVisible(shown)
+        for widget, shown in ((self.glow, not two), (self.shapes.glow, two), (self.shapes.extents, two)):
+            widget.setVisible(shown)
         self.reset.setVisible(edited)
         self.reset.setToolTip(f"Back to the preset {origin}" if origin else "Back to the first preset")
         self._show_point()
+
+    def pick(self, found: Found) -> None:
+        """Show where a material that was picked in the picture lies."""
+        self.plot.pick(found.value)
+        self.shapes.plot.pick(found.value, found.gradient)
 
     def _show_point(self, index: int | None = None) -> None:
         plot, transfer = self.plot, self.plot.transfer
@@ -162,6 +187,7 @@ class TransferEditor(QWidget):
         """Take the theme's icon colours."""
         self.reset.setIcon(icon("reset", current_theme()))
         self.remove.setIcon(icon("remove", current_theme()))
+        self.shapes.refresh_theme()
         self.plot.update()
 
 

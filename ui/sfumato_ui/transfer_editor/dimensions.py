@@ -1,0 +1,79 @@
+"""The switch between functions of the value alone and of value and gradient; nothing is lost on the way."""
+
+from __future__ import annotations
+
+import weakref
+
+from qtpy.QtCore import Qt
+from qtpy.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
+
+from sfumato import Region, Scene, Volume
+from sfumato.scene.presets import suggest_transfer
+from sfumato.scene.region_edit import one_dimensional, two_dimensional
+
+from ..editing import Editor
+
+TIPS = (
+    "A function of the value: points of colour and opacity. Coming from 2D, its points are as they were; "
+    "the shapes come back with 2D.",
+    "A function of the value and of how steeply it changes, by shapes. At first one shape, the 1D curve, shows "
+    "everywhere what the points show: cut it to steep gradients, or lay other shapes over it.",
+)
+
+
+class Dimensions(QWidget):
+    """Two buttons, of which one is down."""
+
+    def __init__(self, editor: Editor) -> None:
+        super().__init__()
+        self._editor = editor
+        #: Shapes that were there before, and of which volume.
+        self._left: tuple[weakref.ref[Volume] | None, tuple[Region, ...]] = (None, ())
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(0)
+        self._group = QButtonGroup(self)
+        self.buttons = _button("1D", TIPS[0]), _button("2D", TIPS[1])
+        for button in self.buttons:
+            self._group.addButton(button)
+            row.addWidget(button)
+        self.buttons[0].clicked.connect(self._to_one)
+        self.buttons[1].clicked.connect(self._to_two)
+
+    @property
+    def two(self) -> bool:
+        """Whether the scene's function has two dimensions."""
+        transfer = self._editor.scene.transfer
+        return transfer is not None and bool(transfer.regions)
+
+    def show_scene(self, scene: Scene) -> None:
+        """Show which of the two a scene's function is."""
+        self.buttons[self.two].setChecked(True)
+        transfer = scene.transfer
+        if scene.volume is not None and transfer is not None and transfer.regions:
+            self._left = weakref.ref(scene.volume), transfer.regions
+
+    def _to_one(self) -> None:
+        scene = self._editor.scene
+        if self.two and scene.transfer is not None and scene.volume is not None:
+            flat = one_dimensional(scene.transfer, suggest_transfer(scene.volume))
+            self._editor.change("Use the 1D function", transfer=flat)
+
+    def _to_two(self) -> None:
+        scene = self._editor.scene
+        if not self.two and scene.transfer is not None and scene.volume is not None:
+            of, regions = self._left
+            kept = regions if of is not None and of() is scene.volume else ()
+            self._editor.change(
+                "Use a 2D function", transfer=two_dimensional(scene.transfer, scene.volume, kept)
+            )
+
+
+def _button(name: str, tip: str) -> QToolButton:
+    button = QToolButton()
+    button.setText(name)
+    button.setCheckable(True)
+    button.setAccessibleName(f"{name} transfer function")
+    button.setToolTip(f"<p>{tip}</p>")
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button
