@@ -18,8 +18,10 @@ from .volume import Volume
 BUDGET = 4_000_000
 #: The same for a first look.
 GLANCE = 40_000
-#: Bins over the values and over the gradient magnitude.
+#: Bins over the values and over the usual gradient magnitudes, at most.
 BINS = (256, 192)
+#: Times the usual gradients that have bins of their own.
+_BEYOND = 4
 #: Bins of the first, fine count, of which several become one.
 _FINE = 4096
 #: Share of the voxels that may be steeper than what is worth seeing.
@@ -37,16 +39,18 @@ class JointHistogram:
     values : (float, float)
         From the first bin's lower to the last one's upper edge; the volume's unit.
     gradients : (float, float)
-        The same of the gradient magnitude, value per mm; what is steeper than all but `OUTSIDE` of the
-        voxels counts in the last bin.
+        The same of the gradient magnitude, value per mm; what is steeper counts in the last bin.
     steepest : float
         The largest gradient magnitude that was found.
+    usual : float
+        All but `OUTSIDE` of the voxels have smaller ones.
     """
 
     counts: np.ndarray
     values: tuple[float, float]
     gradients: tuple[float, float]
     steepest: float
+    usual: float
 
     def bin_of(self, value: float, gradient: float) -> tuple[int, int]:
         """Return row and column of the bin of a value and a gradient magnitude, the nearest if it lies outside."""
@@ -127,7 +131,7 @@ def joint_histogram(
         counted = _count(volume, stop, budget)
         if counted is None:
             return None
-        _kept[volume] = counted
+        return _kept.setdefault(volume, counted)
     return _kept[volume]
 
 
@@ -156,17 +160,19 @@ def _count(volume: Volume, stop: Callable[[], bool], budget: int) -> JointHistog
 def _gathered(
     fine: np.ndarray, values: tuple[float, float], bound: float, up: int, steepest: float
 ) -> JointHistogram:
-    """Make fewer rows of many, up to what nearly all voxels stay below."""
+    """Make fewer rows of many, so that what nearly all voxels stay below has enough of them."""
     share = np.cumsum(fine.sum(axis=1)) / max(1, int(fine.sum()))
-    last = int(np.searchsorted(share, 1 - OUTSIDE)) + 1
-    per_row = -(-last // up)
-    rows = min(up, -(-last // per_row))
+    usual = int(np.searchsorted(share, 1 - OUTSIDE)) + 1
+    last = int(np.flatnonzero(fine.any(axis=1))[-1]) + 1
+    per_row = -(-usual // up)
+    rows = -(-min(last, _BEYOND * usual) // per_row)
     used = rows * per_row
     counts = np.zeros((used, fine.shape[1]), dtype=np.int64)
     counts[: min(used, _FINE)] = fine[:used]
     counts[-1] += fine[used:].sum(axis=0)
     counts = counts.reshape(rows, per_row, -1).sum(axis=1)
-    return JointHistogram(counts, values, (0.0, used * bound / _FINE), steepest)
+    unit = bound / _FINE
+    return JointHistogram(counts, values, (0.0, used * unit), steepest, usual * unit)
 
 
 __all__ = ["JointHistogram", "first_look", "joint_histogram", "known_histogram", "sampled", "steepest_possible"]

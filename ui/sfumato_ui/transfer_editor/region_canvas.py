@@ -140,7 +140,7 @@ class RegionCanvas(QWidget):
         if self.regions and scene.volume is not None and self.isVisible():
             if self.joint is None:
                 self.joint = first_look(scene.volume)
-                self._top = self.joint.gradients[1]
+                self._top = 1.05 * self.joint.usual
             self._count.want(scene.volume)
         self._describe()
         self.update()
