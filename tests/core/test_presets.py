@@ -237,3 +237,32 @@ def test_a_view_fits_the_aspect_of_its_picture(aspect: float) -> None:
         for axis, extent in zip((basis.right, basis.up), half, strict=True)
     ]
     assert 0.7 < max(spans) < 0.9
+
+
+# -- two dimensions -----------------------------------------------------------------------------------
+def noisy(zero: int = 0) -> np.ndarray:
+    """Return a patient whose tissue is uneven, as scans are."""
+    data = patient(zero, table=False).astype(np.int16)
+    return data + np.random.default_rng(4).normal(0, 12, data.shape).round().astype(np.int16)
+
+
+def test_glass_skin_shows_steep_boundaries_alone() -> None:
+    glass, skin = (preset(name, ct(noisy())).transfer for name in ("Glass skin", "Skin and bone"))
+    assert glass.points == skin.points
+    (curve,) = glass.regions
+    assert curve.shape == "curve"
+    bone, flat, steep = np.array([700.0]), np.array([0.0]), np.array([curve.gradient[0] * 5])
+    assert glass.evaluate_2d(bone, flat)[0, 3] == 0
+    assert glass.evaluate_2d(bone, steep)[0, 3] == pytest.approx(skin.evaluate(bone)[0, 3], abs=0.01)
+    assert 1 < curve.gradient[0] < 40, "above the noise"
+    stored = preset("Glass skin", ct(noisy(1024))).transfer.regions[0]
+    assert stored.gradient == pytest.approx(curve.gradient)
+    assert stored.value == pytest.approx([v + 1024 for v in curve.value])
+
+
+def test_boundaries_are_for_values_of_unknown_meaning() -> None:
+    data = np.clip(noisy(1000) / 12, 0, 255).astype(np.uint8)
+    assert preset("Boundaries", Volume(data)).transfer.regions
+    for modality in ("MR", "US"):
+        assert "Boundaries" not in {p.name for p in presets_for(ct(data, modality))}
+    assert suggest_view(ct(noisy()), preset("Glass skin", ct(noisy())).transfer) is not None

@@ -10,7 +10,12 @@ from sfumato import Region, Scene, TransferFunction, Volume
 
 TRIANGLE = ((0.0, 0.0), (10.0, 0.0), (0.0, 10.0))
 FUNCTION = TransferFunction.from_points(
-    [(10, (1, 0.2, 0.1), 0.0), (60, (1, 0.2, 0.1), 0.5), (90, (0.2, 0.4, 1), 0.0, (1, 0, 0)), (200, (1, 1, 1), 0.9)]
+    [
+        (10, (1, 0.2, 0.1), 0.0),
+        (60, (1, 0.2, 0.1), 0.5),
+        (90, (0.2, 0.4, 1), 0.0, (1, 0, 0)),
+        (200, (1, 1, 1), 0.9),
+    ]
 )
 WHOLE = Region("curve", (-10, 300), (0, 200), opacity=1.0, feather=0.0)
 
@@ -45,9 +50,13 @@ def test_a_curve_shows_the_points_where_it_lies() -> None:
     values = np.linspace(0, 250, 101)
     np.testing.assert_allclose(two.evaluate_2d(values, np.array(0.0)), _seen(FUNCTION.evaluate(values)))
     np.testing.assert_allclose(two.evaluate_2d(values, np.array(150.0)), _seen(FUNCTION.evaluate(values)))
-    steep = TransferFunction(FUNCTION.points, None, (Region("curve", (-10, 300), (50, 200), opacity=0.5, feather=0.1),))
+    steep = TransferFunction(
+        FUNCTION.points, None, (Region("curve", (-10, 300), (50, 200), opacity=0.5, feather=0.1),)
+    )
     assert not steep.evaluate_2d(values, np.array(40.0))[:, 3].any()
-    np.testing.assert_allclose(steep.evaluate_2d(values, np.array(120.0))[:, 3], FUNCTION.evaluate(values)[:, 3] / 2)
+    np.testing.assert_allclose(
+        steep.evaluate_2d(values, np.array(120.0))[:, 3], FUNCTION.evaluate(values)[:, 3] / 2
+    )
 
 
 def _seen(look: np.ndarray) -> np.ndarray:

@@ -145,7 +145,9 @@ def test_the_viewport_follows_at_drag_quality(plot: RegionPlot, user: Any, qtbot
     assert np.abs(user.pixels() - before).max() > 50
 
 
-def test_handles_stretch_and_are_hit_from_twelve_pixels_away(plot: RegionPlot, user: Any, qtbot: QtBot) -> None:
+def test_handles_stretch_and_are_hit_from_twelve_pixels_away(
+    plot: RegionPlot, user: Any, qtbot: QtBot
+) -> None:
     click(qtbot, plot, place(plot, 80, 30))
     assert HIT >= 12
     corner = plot.handle_places()["upper right"].toPoint()
@@ -174,7 +176,9 @@ def test_a_shape_of_a_few_pixels_is_taken_by_its_middle(plot: RegionPlot, user: 
     assert np.ptp(plot.region.value) == pytest.approx(2 * across), "moved, not stretched"
 
 
-def test_an_outline_is_drawn_and_escape_ends_drawing(plot: RegionPlot, shapes: RegionEditor, user: Any, qtbot: QtBot) -> None:
+def test_an_outline_is_drawn_and_escape_ends_drawing(
+    plot: RegionPlot, shapes: RegionEditor, user: Any, qtbot: QtBot
+) -> None:
     window = plot.window()
     shapes.add.menu().actions()[3].trigger()
     assert plot.drawing
@@ -195,14 +199,16 @@ def test_an_outline_is_drawn_and_escape_ends_drawing(plot: RegionPlot, shapes: R
     assert drawn.shape == "polygon"
     assert 4 <= len(drawn.points) <= 6
     assert plot.selected == 2
-    across, up = plot.plane.per_pixel
+    across, _up = plot.plane.per_pixel
     assert np.ptp([v for v, _ in drawn.points]) == pytest.approx(80 * across, abs=3 * across)
     user.drag(plot, plot.handle_places()["corner 1"].toPoint(), middle + QPoint(60, 0))
     assert plot.regions[-1].points[1:] == drawn.points[1:]
     assert undo_all(plot) == 2
 
 
-def test_a_double_click_adds_and_the_ground_moves_the_view_when_zoomed(plot: RegionPlot, user: Any, qtbot: QtBot) -> None:
+def test_a_double_click_adds_and_the_ground_moves_the_view_when_zoomed(
+    plot: RegionPlot, user: Any, qtbot: QtBot
+) -> None:
     ground = place(plot, 170, 70)
     qtbot.mouseDClick(plot, LEFT, pos=ground)
     added = plot.regions[2]
@@ -317,7 +323,9 @@ def test_shift_moves_the_shapes_too(window: MainWindow, shapes: RegionEditor) ->
     assert shapes.plot.regions[0].value == pytest.approx((80, 160)), "a tenth of the volume's range"
 
 
-def test_a_picked_material_is_marked_and_its_shape_selected(window: MainWindow, shapes: RegionEditor, qtbot: QtBot) -> None:
+def test_a_picked_material_is_marked_and_its_shape_selected(
+    window: MainWindow, shapes: RegionEditor, qtbot: QtBot
+) -> None:
     plot = shapes.plot
     plot.select(1)
     window.viewport.setFocus()

@@ -11,8 +11,8 @@ from .geometry import Geometry, Lines, Mesh, Roi, Seeds, Surface, Tracing
 from .light import Light, nearest_possible_tilt, tilt_is_possible
 from .params import Field, Param, fields_of
 from .paths import parse_setting
-from .scene import MAX_LIGHTS, Scene, TechniqueParams
 from .region import Region
+from .scene import MAX_LIGHTS, Scene, TechniqueParams
 from .transfer import MAX_OPACITY, TransferFunction, TransferPoint
 from .volume import Volume, VolumeInfo
 

@@ -175,4 +175,11 @@ def _gathered(
     return JointHistogram(counts, values, (0.0, used * unit), steepest, usual * unit)
 
 
-__all__ = ["JointHistogram", "first_look", "joint_histogram", "known_histogram", "sampled", "steepest_possible"]
+__all__ = [
+    "JointHistogram",
+    "first_look",
+    "joint_histogram",
+    "known_histogram",
+    "sampled",
+    "steepest_possible",
+]

@@ -71,9 +71,7 @@ class Region:
     def rescaled(self, scale: float, offset: float) -> Region:
         """Return the region with every value v moved to ``scale * v + offset``."""
         low, high = sorted(v * scale + offset for v in self.value)
-        return replace(
-            self, value=(low, high), points=tuple((v * scale + offset, g) for v, g in self.points)
-        )
+        return replace(self, value=(low, high), points=tuple((v * scale + offset, g) for v, g in self.points))
 
     def coverage(self, value: np.ndarray, gradient: np.ndarray) -> np.ndarray:
         """Return how much of the region's opacity holds at each (value, gradient), 0 to 1."""

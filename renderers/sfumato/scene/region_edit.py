@@ -59,9 +59,7 @@ def with_region_changed(transfer: TransferFunction, index: int, **changes: Any) 
 
 def with_region(transfer: TransferFunction, index: int, region: Region) -> TransferFunction:
     """Return the function with another region in the place of one."""
-    return replace(
-        transfer, regions=(*transfer.regions[:index], region, *transfer.regions[index + 1 :])
-    )
+    return replace(transfer, regions=(*transfer.regions[:index], region, *transfer.regions[index + 1 :]))
 
 
 def reordered(transfer: TransferFunction, index: int, by: int) -> tuple[TransferFunction, int]:
@@ -81,7 +79,8 @@ def handles(region: Region) -> dict[str, Corner]:
         return {f"corner {i + 1}": corner for i, corner in enumerate(region.points)} | middle
     sides = {None: 0.5, 0: 0.0, 1: 1.0}
     return {
-        name: (v0 + (v1 - v0) * sides[side], g0 + (g1 - g0) * sides[end]) for name, (side, end) in _BOX.items()
+        name: (v0 + (v1 - v0) * sides[side], g0 + (g1 - g0) * sides[end])
+        for name, (side, end) in _BOX.items()
     } | middle
 
 
@@ -171,9 +170,9 @@ def _holds(region: Region, value: float, gradient: float) -> bool:
 
 def simplified(places: np.ndarray, tolerance: float) -> np.ndarray:
     """Return the corners that an outline (n, 2) needs, to within a tolerance in its own unit (Douglas1973)."""
-    while len(kept := places[_needed(places, tolerance)]) > MOST_CORNERS:
+    while (needed := _needed(places, tolerance)).sum() > MOST_CORNERS:
         tolerance *= 1.5
-    return kept
+    return np.asarray(places[needed])
 
 
 def _needed(places: np.ndarray, tolerance: float) -> np.ndarray:

@@ -50,8 +50,9 @@ class MaterialPage(Page):
         for widget in (self.bar, self.ask, self.presets, self.density, self.transfer, self.more):
             self.add(widget)
         shapes = self.transfer.shapes
-        for widget in (shapes.extents, shapes.glow, self.level, self.width_of_all, self.transfer.glow):
-            self.more.add(widget)
+        self.more.add(shapes.extents)
+        for slider in (shapes.glow, self.level, self.width_of_all, self.transfer.glow):
+            self.more.add(slider)
         self.finish()
         self._connect()
         self.refresh()

@@ -30,7 +30,7 @@ class Plane:
         """Return the places in pixels of pairs of value and gradient, shape (n, 2)."""
         low = np.array([self.values[0], self.gradients[0]])
         part = (np.asarray(pairs, dtype=float) - low) * self._pixels_per_unit
-        return np.array([self.rect.left(), self.rect.bottom()]) + part * [1, -1]
+        return np.asarray(np.array([self.rect.left(), self.rect.bottom()]) + part * [1, -1])
 
     def pair(self, at: QPointF) -> Range:
         """Return value and gradient magnitude at a place."""
@@ -49,7 +49,7 @@ class Plane:
     @property
     def _pixels_per_unit(self) -> np.ndarray:
         spans = np.array([self.values[1] - self.values[0], self.gradients[1] - self.gradients[0]])
-        return np.array([max(1.0, self.rect.width()), max(1.0, self.rect.height())]) / spans
+        return np.asarray(np.array([max(1.0, self.rect.width()), max(1.0, self.rect.height())]) / spans)
 
     def clamped(self, at: QPointF) -> QPointF:
         """Return the place within the plot that is nearest to one."""

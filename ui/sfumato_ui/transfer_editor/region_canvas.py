@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from qtpy.QtCore import QPointF, QSize, Signal
@@ -12,15 +11,16 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from sfumato import Region, Scene, TransferFunction, Volume
 from sfumato.scene.joint_histogram import JointHistogram, first_look, steepest_possible
-from sfumato.scene.region_edit import MIDDLE, handles, topmost
+from sfumato.scene.region_edit import topmost
 
 from ..editing import Editor
 from ..theme import Theme, current_theme
 from . import histogram, painting, region_painting
-from .canvas import HIT, TransferCanvas
+from .canvas import TransferCanvas
 from .joint_count import JointCount
 from .plane import Plane
-from .scale import decimals_for
+from .region_hits import handle_at, handle_places, region_at
+from .scale import Scale, decimals_for
 
 #: Names of the shapes.
 NAMES = {
@@ -30,8 +30,6 @@ NAMES = {
     "polygon": "Freehand",
     "curve": "1D curve",
 }
-#: Sides shorter than so many pixels have no handle in their middle: the corners' and the centre's come first.
-_ROOM = 3 * HIT
 
 
 class RegionCanvas(QWidget):
@@ -128,7 +126,10 @@ class RegionCanvas(QWidget):
         if scene.volume is None:
             return whole.values, whole.gradients
         low, high = histogram.first_range(scene.volume, None, self._line.zero)
-        return (max(low, whole.values[0]), min(high, whole.values[1])), (0.0, min(self._top, whole.gradients[1]))
+        return (max(low, whole.values[0]), min(high, whole.values[1])), (
+            0.0,
+            min(self._top, whole.gradients[1]),
+        )
 
     def show_scene(self, scene: Scene) -> None:
         """Show a scene's function, and its volume's values and gradients behind it; count them if that is not done."""
@@ -206,57 +207,14 @@ class RegionCanvas(QWidget):
 
     # -- what is under the pointer ------------------------------------------------------------------
     def handle_places(self) -> dict[str, QPointF]:
-        """Return the places of the selected region's handles; those out of view lie at the plot's edge."""
-        region, plane = self.region, self.plane
-        if region is None:
-            return {}
-        if region.shape == "polygon":
-            places = {name: plane.at(*pair) for name, pair in handles(region).items()}
-        else:
-            # Those of the part that is in view.
-            (v0, v1), (g0, g1) = region.extent
-            low, high = plane.clamped(plane.at(v0, g0)), plane.clamped(plane.at(v1, g1))
-            seen = replace(region, value=(low.x(), max(high.x(), low.x() + 1e-6)))
-            seen = replace(seen, gradient=(-low.y(), max(-high.y(), -low.y() + 1e-6)))
-            places = {name: QPointF(x, -y) for name, (x, y) in handles(seen).items()}
-            narrow, flat = high.x() - low.x() < _ROOM, low.y() - high.y() < _ROOM
-            left_out = ("upper", "lower") * narrow + ("left", "right") * flat
-            places = {name: at for name, at in places.items() if name not in left_out}
-        if region.shape == "curve":
-            # What it shows does not move with it: it is cut to a part by its edges alone.
-            del places[MIDDLE]
-        return {name: plane.clamped(at) for name, at in places.items()}
+        """Return the places of the selected region's handles by their names."""
+        return handle_places(self.region, self.plane) if self.region is not None else {}
 
     def _handle_under(self, at: QPointF) -> str:
-        away = {name: _distance(place, at) for name, place in self.handle_places().items()}
-        nearest = min(away, key=away.__getitem__, default="")
-        return nearest if nearest and away[nearest] <= HIT else ""
+        return handle_at(self.region, self.plane, at) if self.region is not None else ""
 
     def _region_under(self, at: QPointF) -> int:
-        """Return the region at a place, or the one whose edge is near; the selected one first."""
-        plane = self.plane
-        if not plane.rect.adjusted(-HIT, -HIT, HIT, HIT).contains(at):
-            return -1
-        value, gradient = plane.pair(plane.clamped(at))
-        inside = [i for i, r in enumerate(self.regions) if topmost((r,), value, gradient) == 0]
-        # A curve lies under everything that is drawn upon it.
-        solid = [i for i in inside if self.regions[i].shape != "curve"]
-        if solid:
-            return self.selected if self.selected in solid else solid[-1]
-        near = {i: self._away(region, at) for i, region in enumerate(self.regions)}
-        nearest = min(near, key=near.__getitem__, default=-1)
-        if nearest >= 0 and near[nearest] <= HIT:
-            return nearest
-        return inside[-1] if inside else -1
-
-    def _away(self, region: Region, at: QPointF) -> float:
-        """Return the distance in pixels of a place from a region's edge."""
-        polygon = region_painting.polygon_of(region, self.plane)
-        corners = np.array([[p.x(), p.y()] for p in polygon])
-        way = np.roll(corners, -1, axis=0) - corners
-        to = np.array([at.x(), at.y()]) - corners
-        along = np.clip((to * way).sum(axis=1) / np.maximum((way * way).sum(axis=1), 1e-12), 0, 1)
-        return float(np.hypot(*(to - along[:, None] * way).T).min())
+        return region_at(self.regions, self.plane, at, self.selected)
 
     # -- looks ------------------------------------------------------------------------------------
     def _areas(self) -> painting.Areas:
@@ -296,7 +254,7 @@ class RegionCanvas(QWidget):
 
     def _draw_axes(self, painter: QPainter, areas: painting.Areas, plane: Plane, theme: Theme) -> None:
         line = self._line
-        scale = painting.Scale(plane.rect, *plane.values)
+        scale = Scale(plane.rect, *plane.values)
         painting.draw_axis(painter, areas, scale, theme, line.zero or 0.0, line.unit, line.decimals)
         region_painting.draw_gradient_axis(painter, areas, plane, theme, self.unit)
         if line.zero is not None and self._hover is None:
@@ -334,7 +292,3 @@ class RegionCanvas(QWidget):
         zero = self._line.zero or 0.0
         shown = f"{painting.text_of(value - zero, self._line.decimals)} {self._line.unit}".strip()
         return f"{shown}   {painting.text_of(gradient, self.decimals)} {self.unit}   {100 * opacity:.3g} %"
-
-
-def _distance(a: QPointF, b: QPointF) -> float:
-    return float(np.hypot(a.x() - b.x(), a.y() - b.y()))

@@ -44,7 +44,10 @@ class RegionEditor(QWidget):
         self.shape.setToolTip("The selected shape; those below lie over those above")
         self.add = _tool("Add a shape")
         self.duplicate = _tool("Duplicate the shape (Ctrl+D in the plot)")
-        self.over, self.under = _tool("Lay the shape over the next (Page up)"), _tool("Lay the shape under the next (Page down)")
+        self.over, self.under = (
+            _tool("Lay the shape over the next (Page up)"),
+            _tool("Lay the shape under the next (Page down)"),
+        )
         self.remove = _tool("Remove the shape (Del)")
         self.opacity = _per_cent("Opacity of the shape in %", "The shape's opacity, per unit distance")
         self.soft = _per_cent(
@@ -153,7 +156,12 @@ class RegionEditor(QWidget):
         for button, able, words, reason in (
             (self.over, index < last, "Lay the shape over the next (Page up)", "No shape lies over it"),
             (self.under, index > 0, "Lay the shape under the next (Page down)", "No shape lies under it"),
-            (self.remove, last > 0, "Remove the shape (Del)", "The last shape stays: choose 1D to do without"),
+            (
+                self.remove,
+                last > 0,
+                "Remove the shape (Del)",
+                "The last shape stays: choose 1D to do without",
+            ),
         ):
             button.setEnabled(able)
             button.setToolTip(words if able else reason)

@@ -76,9 +76,7 @@ def _grey(lightness: np.ndarray) -> np.ndarray:
 
 def draw_histogram(painter: QPainter, plane: Plane, histogram: JointHistogram, image: QImage) -> None:
     """Draw the part of the histogram that is in view."""
-    corners = [
-        plane.at(v, g) for v, g in zip(histogram.values, reversed(histogram.gradients), strict=True)
-    ]
+    corners = [plane.at(v, g) for v, g in zip(histogram.values, reversed(histogram.gradients), strict=True)]
     painter.save()
     painter.setClipRect(plane.rect)
     painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)

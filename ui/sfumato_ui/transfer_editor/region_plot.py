@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
 from qtpy.QtCore import QEvent, QPointF, Qt
 from qtpy.QtGui import QKeyEvent, QMouseEvent, QShowEvent, QWheelEvent
 
@@ -19,16 +18,9 @@ from sfumato.scene import region_edit
 
 from ..editing import Editor
 from .canvas import TransferCanvas
+from .new_shapes import LEAST, aside, drawn_region, new_region
 from .region_canvas import NAMES, RegionCanvas
 
-#: Least sides of a shape in pixels.
-LEAST = 4.0
-#: Pixels by which a shape that would cover another just so lies aside.
-ASIDE = 14.0
-#: Parts of the view that a new shape takes, across and up.
-PART = 0.2, 0.28
-#: Pixels by which a drawn outline may be simplified.
-TOLERANCE = 1.5
 TIP = (
     "<p>How many voxels have a value (across) and a gradient magnitude (up), logarithmically: boundaries "
     "between two tissues are arcs. What lies in the shapes is seen.</p>"
@@ -75,34 +67,16 @@ class RegionPlot(RegionCanvas):
             return
         volume = self._volume
         if volume is not None and self.transfer is not None:
-            region = region_edit.whole_curve(volume) if shape == "curve" else self._new(shape, at)
-            self._apply(f"Add a {NAMES[shape].lower()}", *region_edit.with_region_added(self.transfer, region))
-
-    def _new(self, shape: str, at: QPointF | None) -> Region:
-        plane = self.plane
-        rect = plane.rect
-        middle = rect.center()
-        if at is not None:
-            middle = at
-        elif self.picked is not None:
-            middle = plane.clamped(plane.at(*self.picked))
-        half = QPointF(PART[0] * rect.width() / 2, PART[1] * rect.height() / 2)
-        middle = QPointF(
-            min(max(middle.x(), rect.left() + half.x()), rect.right() - half.x()),
-            min(max(middle.y(), rect.top() + half.y()), rect.bottom() - half.y()),
-        )
-        (v0, g1), (v1, g0) = plane.pair(middle - half), plane.pair(middle + half)
-        made = Region(shape, (v0, v1), (max(0.0, g0), g1), color=self._next_color(), opacity=0.5)
-        across, up = plane.per_pixel
-        while any(np.allclose(made.extent, other.extent) for other in self.regions):
-            made = region_edit.moved(made, ASIDE * across, ASIDE * up)
-        return made
-
-    def _next_color(self) -> tuple[float, float, float]:
-        """Return a colour that the shapes do not have yet; linear RGB of skin, bone, blood, vein, nerve."""
-        used = {r.color for r in self.regions}
-        colours = ((0.75, 0.45, 0.3), (0.8, 0.7, 0.5), (0.6, 0.08, 0.06), (0.12, 0.3, 0.6), (0.75, 0.6, 0.1))
-        return next((c for c in colours if c not in used), colours[len(self.regions) % len(colours)])
+            plane = self.plane
+            about = plane.rect.center() if self.picked is None else plane.clamped(plane.at(*self.picked))
+            region = (
+                region_edit.whole_curve(volume)
+                if shape == "curve"
+                else new_region(shape, plane, about if at is None else at, self.regions)
+            )
+            self._apply(
+                f"Add a {NAMES[shape].lower()}", *region_edit.with_region_added(self.transfer, region)
+            )
 
     def remove_region(self) -> None:
         """Remove the selected region; the last one stays."""
@@ -114,8 +88,7 @@ class RegionPlot(RegionCanvas):
         """Add a copy of the selected region, a little aside, over it."""
         if self.transfer is None or self.region is None:
             return
-        across, up = self.plane.per_pixel
-        copy = region_edit.moved(self.region, ASIDE * across, ASIDE * up)
+        copy = aside(self.region, self.plane)
         changed, index = region_edit.with_region_added(self.transfer, copy, self.selected + 1)
         self._apply("Duplicate the shape", changed, index)
 
@@ -224,19 +197,10 @@ class RegionPlot(RegionCanvas):
 
     def _close_outline(self) -> None:
         """Make a shape of the outline that was drawn, if it is one."""
-        places = np.array([[p.x(), p.y()] for p in self._drawn])
+        region = drawn_region(self._drawn, self.plane, self.regions)
         self.end_drawing()
-        if self.transfer is None or np.ptp(places, axis=0).min() < LEAST:
-            return
-        corners = region_edit.simplified(places, TOLERANCE)
-        if len(corners) > 3 and np.hypot(*(corners[0] - corners[-1])) < 3 * LEAST:
-            corners = corners[:-1]
-        if len(corners) < 3:
-            return
-        pairs = [self.plane.pair(QPointF(x, y)) for x, y in corners.tolist()]
-        points = tuple((value, max(0.0, gradient)) for value, gradient in pairs)
-        region = Region("polygon", points=points, color=self._next_color(), opacity=0.5)
-        self._apply("Draw a shape", *region_edit.with_region_added(self.transfer, region))
+        if region is not None and self.transfer is not None:
+            self._apply("Draw a shape", *region_edit.with_region_added(self.transfer, region))
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Add a rectangle where there is no shape but a curve."""

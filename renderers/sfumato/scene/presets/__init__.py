@@ -1,8 +1,9 @@
 """Transfer function presets, and what the first picture of a volume looks like.
 
 CT in Hounsfield units has presets in Hounsfield units (`hounsfield`), also where a reader could not tell
-that it is CT; everything else has presets relative to its own histogram (`relative`). `view` places the
-camera before what is visible, `table` cuts the scanner's table away.
+that it is CT; everything else has presets relative to its own histogram (`relative`). `boundaries` shows
+of some of them only where values change steeply. `view` places the camera before what is visible, `table` cuts
+the scanner's table away.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from ...errors import SceneError
 from ..transfer import TransferFunction
 from ..volume import Volume
+from .boundaries import boundaries, glass_skin
 from .hounsfield import hounsfield_presets
 from .media import MEDIA, Medium, filled, media_presets
 from .preset import Preset
@@ -45,7 +47,9 @@ def presets_for(volume: Volume) -> tuple[Preset, ...]:
 def _in_clear_air(volume: Volume) -> tuple[Preset, ...]:
     zero = hounsfield_zero(volume)
     if zero is not None:
-        return _by_content(hounsfield_presets(zero), volume, zero)
+        presets = hounsfield_presets(zero)
+        through = next(p for p in presets if p.name == "Skin and bone")
+        return _by_content((*presets, *glass_skin(through, volume, zero)), volume, zero)
     parts = levels(volume)
     plain = plain_presets(parts)
     own = {"MR": mr_presets, "US": ultrasound_presets}.get(_modality(volume))
@@ -53,7 +57,9 @@ def _in_clear_air(volume: Volume) -> tuple[Preset, ...]:
         return (*own(parts), *plain)
     if float((thinned(volume) > parts.surface).mean()) < SPARSE:
         plain = tuple(sorted(plain, key=lambda p: p.name != "Solid red"))
-    return (*plain, *mr_presets(parts), *ultrasound_presets(parts))
+    # In MR they show no more than Glass does: its tissues have no steeper edges than its noise.
+    steep = boundaries(next(p for p in plain if p.name == "Translucent"), volume, parts)
+    return (*plain, *steep, *mr_presets(parts), *ultrasound_presets(parts))
 
 
 def _modality(volume: Volume) -> str:
