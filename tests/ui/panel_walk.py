@@ -244,6 +244,17 @@ def walk_window(window: MainWindow, theme: str) -> list[str]:
         if page.widget().width() > page.viewport().width():
             wrong.append(f"{where}: the panel is cut off at its right edge")
     wrong += check_gallery(window.material_page.presets, theme)
+    return wrong + walk_shapes(window, theme)
+
+
+def walk_shapes(window: MainWindow, theme: str) -> list[str]:
+    """Walk the Material tab with a function of two dimensions."""
+    window.panel.setCurrentWidget(window.material_page)
+    transfer = window.material_page.transfer
+    transfer.dimensions.buttons[1].click()
+    transfer.shapes.plot.add_shape("trapezoid")
+    wrong = Walk(window, window.centralWidget(), f"{theme}, Material in 2D").check()
+    transfer.dimensions.buttons[0].click()
     return wrong
 
 

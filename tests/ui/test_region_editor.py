@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 from qtpy.QtCore import QPoint, QPointF, Qt
-from qtpy.QtWidgets import QApplication, QMenu
+from qtpy.QtWidgets import QApplication, QFileDialog, QMenu, QWidget
 
 from sfumato import Region, Scene, TransferFunction, Volume
 from sfumato_ui.transfer_editor import region_painting
@@ -313,6 +313,40 @@ def test_an_own_preset_keeps_the_shapes(window: MainWindow, shapes: RegionEditor
     assert window.editor.scene.transfer.regions == (BOX, ROUND)
     assert not shapes.window().material_page.transfer.reset.isVisible()
     assert visible_range(window.editor.scene.transfer) == (20, 140)
+
+
+def test_presets_are_found_exported_and_imported(
+    window: MainWindow, shapes: RegionEditor, qtbot: QtBot, tmp_path: Path
+) -> None:
+    page = window.material_page
+    page.more.set_open(True)
+    page.ensureWidgetVisible(page.files)
+
+    def answer(button: QWidget, path: Path) -> None:
+        click(qtbot, button)
+        (dialog,) = (d for d in window.findChildren(QFileDialog) if d.isVisible())
+        dialog.fileSelected.emit(str(path))
+        dialog.reject()
+        qtbot.wait(1)
+
+    shared = tmp_path / "shared.json"
+    answer(page.files.share, shared)
+    window.editor.change("Other", transfer=TransferFunction())
+    answer(page.files.get, shared)
+    assert window.editor.scene.transfer.regions == (BOX, ROUND)
+    assert page.presets.currentItem().text() == "shared"
+    page.files.words.setFocus()
+    rows, height = page.presets.count(), page.presets.height()
+    qtbot.keyClicks(page.files.words, "SHAR")
+    assert [page.presets.item(i).text() for i in range(rows) if not page.presets.isRowHidden(i)] == ["shared"]
+    assert page.presets.height() < height
+    page.files.words.clear()
+    assert page.presets.height() == height
+    shared.write_text("{nonsense")
+    refused = []
+    window.editor.rejected.connect(refused.append)
+    answer(page.files.get, shared)
+    assert "cannot be imported" in refused[0]
 
 
 def test_shift_moves_the_shapes_too(window: MainWindow, shapes: RegionEditor) -> None:

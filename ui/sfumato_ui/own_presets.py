@@ -19,6 +19,8 @@ from .own_files import MAX_NAME, OwnFiles
 
 #: A transfer function has a few hundred bytes; what is larger than this is something else.
 _MAX_BYTES = 4 << 20
+#: Ending of the files.
+SUFFIX = ".json"
 
 
 class OwnPresets(OwnFiles[TransferFunction]):
@@ -47,4 +49,4 @@ class OwnPresets(OwnFiles[TransferFunction]):
             part.write_text(json.dumps(to_json(replace(thing, name=name)), indent=1) + "\n", encoding="utf-8")
 
 
-__all__ = ["MAX_NAME", "OwnPresets"]
+__all__ = ["MAX_NAME", "SUFFIX", "OwnPresets"]

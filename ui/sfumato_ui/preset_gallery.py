@@ -113,6 +113,13 @@ class PresetGallery(QListWidget):
             icon.addPixmap(pixmap, mode)
         self.item(row).setIcon(icon)
 
+    def seek(self, words: str) -> None:
+        """Show only presets that hold all of some words."""
+        for row, preset in enumerate(self._presets):
+            text = f"{preset.name} {preset.description}".lower()
+            self.setRowHidden(row, not all(word in text for word in words.lower().split()))
+        self._fit()
+
     # -- size -------------------------------------------------------------------------------------
     def _fit(self) -> None:
         """Take the height of all rows; the names are a little smaller than other text, so that they fit."""
@@ -123,7 +130,8 @@ class PresetGallery(QListWidget):
         self.setGridSize(QSize(width, height))
         for row in range(self.count()):  # else names would be cut off at the width of the picture
             self.item(row).setSizeHint(QSize(width - 1, height - 4))
-        rows = -(-self.count() // COLUMNS)
+        shown = sum(not self.isRowHidden(row) for row in range(self.count()))
+        rows = -(-shown // COLUMNS)
         self.setFixedHeight(max(1, rows) * height + 2 * self.frameWidth() + 2)
 
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -15,6 +15,7 @@ from sfumato.scene.presets import Preset, presets_for
 from ..editing import Editor
 from ..own_presets import OwnPresets
 from ..preset_bar import AskLine, PresetBar
+from ..preset_files import PresetFiles
 from ..preset_gallery import PICTURE, PresetGallery
 from ..section import Section
 from ..sliders import LabelledSlider
@@ -41,6 +42,7 @@ class MaterialPage(Page):
         self.own = OwnPresets()
         self._told: tuple[str, ...] = ()
         self.bar, self.ask, self.presets = PresetBar(), AskLine(), PresetGallery()
+        self.files = PresetFiles(self.own, lambda: editor.scene.transfer)
         self.transfer = TransferEditor(editor)
         self.more = Section("More", "material_more")
         self._quiet = QTimer(self)
@@ -53,6 +55,7 @@ class MaterialPage(Page):
         self.more.add(shapes.extents)
         for slider in (shapes.glow, self.level, self.width_of_all, self.transfer.glow):
             self.more.add(slider)
+        self.more.add(self.files)
         self.finish()
         self._connect()
         self.refresh()
@@ -83,6 +86,9 @@ class MaterialPage(Page):
         ask.answered.connect(self._answered)
         ask.given_up.connect(self.presets.setFocus)
         self.transfer.reset_wanted.connect(self._reset)
+        self.files.sought.connect(self.presets.seek)
+        self.files.failed.connect(editor.rejected)
+        self.files.imported.connect(self._take_imported)
         self._bind(self.density, "Change the density", self._set_density)
         self._bind(self.level, "Shift the function", self._set_shift)
         self._bind(self.width_of_all, "Widen the function", self._set_width)
@@ -139,6 +145,7 @@ class MaterialPage(Page):
         built_in = presets_for(volume) if volume is not None else ()
         self._presets = (*built_in, *self.own.presets)
         self.presets.fill(self._presets)
+        self.presets.seek(self.files.words.text())
         self._quiet.start()
 
     def _on_changed(self, old: Scene, new: Scene) -> None:
@@ -219,6 +226,13 @@ class MaterialPage(Page):
         origin = self._origin() or (self._presets[0] if self._presets else None)
         if origin is not None:
             self._editor.change("Reset the function", transfer=replace(origin.transfer, name=origin.name))
+
+    def _take_imported(self, name: str) -> None:
+        """Show a preset that was imported, and choose it."""
+        self.files.words.clear()
+        self._fill()
+        self._choose(next(row for row, p in enumerate(self._presets) if self._is_own(row) and p.name == name))
+        self.refresh()
 
     # -- density, shift, width --------------------------------------------------------------------
     def _base(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import weakref
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
+from qtpy.QtWidgets import QHBoxLayout, QToolButton, QWidget
 
 from sfumato import Region, Scene, Volume
 from sfumato.scene.presets import suggest_transfer
@@ -32,10 +32,9 @@ class Dimensions(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)
-        self._group = QButtonGroup(self)
+        # No exclusive group: Tab would reach one of the two alone.
         self.buttons = _button("1D", TIPS[0]), _button("2D", TIPS[1])
         for button in self.buttons:
-            self._group.addButton(button)
             row.addWidget(button)
         self.buttons[0].clicked.connect(self._to_one)
         self.buttons[1].clicked.connect(self._to_two)
@@ -48,7 +47,8 @@ class Dimensions(QWidget):
 
     def show_scene(self, scene: Scene) -> None:
         """Show which of the two a scene's function is."""
-        self.buttons[self.two].setChecked(True)
+        for button, down in zip(self.buttons, (not self.two, self.two), strict=True):
+            button.setChecked(down)
         transfer = scene.transfer
         if scene.volume is not None and transfer is not None and transfer.regions:
             self._left = weakref.ref(scene.volume), transfer.regions
@@ -58,6 +58,7 @@ class Dimensions(QWidget):
         if self.two and scene.transfer is not None and scene.volume is not None:
             flat = one_dimensional(scene.transfer, suggest_transfer(scene.volume))
             self._editor.change("Use the 1D function", transfer=flat)
+        self.show_scene(self._editor.scene)
 
     def _to_two(self) -> None:
         scene = self._editor.scene
@@ -67,6 +68,7 @@ class Dimensions(QWidget):
             self._editor.change(
                 "Use a 2D function", transfer=two_dimensional(scene.transfer, scene.volume, kept)
             )
+        self.show_scene(self._editor.scene)
 
 
 def _button(name: str, tip: str) -> QToolButton:

@@ -1,0 +1,105 @@
+"""Finding presets by a word, and sharing own ones as files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QToolButton, QWidget
+
+from sfumato import SfumatoError, TransferFunction
+
+from .icons import icon
+from .own_presets import SUFFIX, OwnPresets
+from .recent import last_folder
+from .theme import current_theme
+
+FILTER = f"Transfer functions (*{SUFFIX});;All files (*)"
+
+
+class PresetFiles(QWidget):
+    """A line in which a word is typed, and buttons that import and export.
+
+    Parameters
+    ----------
+    own : OwnPresets
+        Where an imported one is kept.
+    shown : callable
+        Returns the function that is exported, with its name.
+    """
+
+    #: The user looks for presets that hold these words.
+    sought = Signal(str)
+    #: A preset was imported (its name), or something failed (why).
+    imported = Signal(str)
+    failed = Signal(str)
+
+    def __init__(self, own: OwnPresets, shown: Callable[[], TransferFunction | None]) -> None:
+        super().__init__()
+        self._own, self._shown = own, shown
+        self.words = QLineEdit()
+        self.words.setPlaceholderText("Find a preset")
+        self.words.setAccessibleName("Find a preset")
+        self.words.setToolTip("Shows the presets above that hold what is typed, in their name or description")
+        self.get = _button("Import a preset: a file of a transfer function, of one dimension or two")
+        self.share = _button("Export the function as a file")
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(4)
+        row.addWidget(self.words, 1)
+        row.addWidget(self.get)
+        row.addWidget(self.share)
+        self.words.textChanged.connect(self.sought)
+        self.get.clicked.connect(self._ask_import)
+        self.share.clicked.connect(self._ask_export)
+        self.refresh_theme()
+
+    def _ask_import(self) -> None:
+        dialog = QFileDialog(self.window(), "Import a preset", last_folder(), FILTER)
+        dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
+        dialog.fileSelected.connect(self.take)
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def take(self, path: str) -> None:
+        """Keep the function of a file among the own presets; a name that is taken gets a number."""
+        try:
+            told, transfer = self._own.read(Path(path))
+            name = self._own.free_name(told or Path(path).stem)
+            self._own.save(name, transfer)
+        except (OSError, ValueError, RecursionError, SfumatoError) as error:
+            self.failed.emit(f"{Path(path).name} cannot be imported: {str(error).splitlines()[0]}")
+        else:
+            self.imported.emit(name)
+
+    def _ask_export(self) -> None:
+        transfer = self._shown()
+        if transfer is None:
+            return
+        start = str(Path(last_folder()) / f"{transfer.name or 'Transfer function'}{SUFFIX}")
+        dialog = QFileDialog(self.window(), "Export the function", start, FILTER)
+        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+        dialog.setDefaultSuffix(SUFFIX[1:])
+        dialog.fileSelected.connect(lambda path: self._give(path, transfer))
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def _give(self, path: str, transfer: TransferFunction) -> None:
+        try:
+            self._own.write(Path(path), transfer.name or Path(path).stem, transfer)
+        except (OSError, SfumatoError) as error:
+            self.failed.emit(f"{Path(path).name} cannot be written: {str(error).splitlines()[0]}")
+
+    def refresh_theme(self) -> None:
+        """Take the theme's icon colours."""
+        for button, name in ((self.get, "open"), (self.share, "save")):
+            button.setIcon(icon(name, current_theme()))
+
+
+def _button(tip: str) -> QToolButton:
+    button = QToolButton()
+    button.setAccessibleName(tip.split(":")[0])
+    button.setToolTip(tip)
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button
