@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,14 +83,20 @@ def test_the_most_opaque_gradient_tells_a_values_look() -> None:
 
 
 def ball(size: int = 32) -> Volume:
+    """Return a ball whose values grow evenly to its middle: 40 per mm everywhere but there."""
     z, y, x = np.mgrid[0:size, 0:size, 0:size] - (size - 1) / 2
-    return Volume(np.clip((0.4 * size - np.sqrt(x * x + y * y + z * z)) * 40, 0, 220).astype(np.int16))
+    return Volume(((0.4 * size - np.sqrt(x * x + y * y + z * z)) * 40).astype(np.int16))
 
 
-@pytest.mark.parametrize("technique", ["raycast", "cone"])
-def test_a_curve_over_everything_is_the_picture_of_the_points(technique: str) -> None:
+@pytest.mark.parametrize(
+    ("technique", "lowest"), [("raycast", 0.0), ("cone", 0.0), ("cone", 20.0), ("multidirectional", 20.0)]
+)
+def test_a_curve_over_all_gradients_there_are_is_the_picture_of_the_points(
+    technique: str, lowest: float
+) -> None:
     scene = Scene(volume=ball(), transfer=FUNCTION, technique=technique)
-    two = scene.with_(transfer=TransferFunction(FUNCTION.points, None, (WHOLE,)))
+    curve = replace(WHOLE, gradient=(lowest, 200.0), feather=0.01)
+    two = scene.with_(transfer=TransferFunction(FUNCTION.points, None, (curve,)))
     one, other = (sfumato.render(s, (96, 96)).astype(float) for s in (scene, two))
     assert one[..., 3].max() > 100
     assert np.abs(one - other).mean() < 1.0

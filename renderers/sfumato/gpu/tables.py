@@ -29,7 +29,7 @@ class TransferTables:
     emission : texture
         The same of tau * emission.
     extinction : texture
-        Integral of tau alone (1D).
+        1D: integral of tau alone; 2D: how many entries, up to each, are seen at any gradient magnitude.
     visible : ndarray of bool, shape (ENTRIES,)
         Values with any extinction.
     max_gradient : float
@@ -96,7 +96,7 @@ def _tables_2d(
     visible = np.interp(np.linspace(0, 1, ENTRIES), np.linspace(0, 1, across), seen) > 0
     textures = [_upload(device, table) for table in (color, emission)]
     emits = bool((sampled[..., 4:] * tau).any())
-    extinction = _upload(device, np.zeros((1, 2, 1), dtype=np.float32))
+    extinction = _upload(device, np.cumsum(seen).astype(np.float32)[None, :, None])
     return TransferTables(
         textures[0], textures[1], extinction, visible, top / (high - low), emits, 2 * color.nbytes
     )

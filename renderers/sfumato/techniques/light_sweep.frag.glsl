@@ -68,7 +68,7 @@ void main() {
     vec3 middle = 0.5 * (enter + leave);
     float s0 = volume_value(enter), s1 = volume_value(middle), s2 = volume_value(leave);
 #ifdef TRANSFER_2D
-    float steep = length(volume_gradient(middle));
+    float steep = is_seen(s0, s1) || is_seen(s1, s2) ? length(volume_gradient(middle)) : 0.0;
     vec2 tau = vec2(classify(s0, s1, steep).a, classify(s1, s2, steep).a);
 #else
     vec2 tau = vec2(classify_extinction(s0, s1), classify_extinction(s1, s2));

@@ -202,7 +202,7 @@ void main() {
                 float z_next = min(z0 + float(j + taken) * dz, range.y);
                 Reading there = reading_at(a + b * z_next);
 #ifdef TRANSFER_2D
-                magnitude = length(volume_gradient(a + b * (0.5 * (z_end + z_next))));
+                magnitude = steepness(next.value, there.value, a + b * (0.5 * (z_end + z_next)));
 #endif
                 float way = max(z_next - z_end, 0.0);
                 vec4 part = way * classify(next.value, there.value, magnitude);

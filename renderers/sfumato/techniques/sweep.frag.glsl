@@ -52,11 +52,7 @@ void main() {
     float value = volume_value(leave);
     // Tiles are swept from one slab before anything in them can be seen: where nobody has looked there is nothing to see.
     float s0 = center.g >= 0.0 ? center.g : value;
-#ifdef TRANSFER_2D
-    float tau = classify(s0, value, length(volume_gradient(0.5 * (enter + leave)))).a;
-#else
-    float tau = classify_extinction(s0, value);
-#endif
+    float tau = extinction_around(s0, value, 0.5 * (enter + leave));
     float absorbed = float(VOLUME) * tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
 #endif
 #if !HOLLOW && GEOMETRY

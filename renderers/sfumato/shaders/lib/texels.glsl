@@ -38,10 +38,5 @@ float seen_value(vec3 t, out float there) {
 // Extinction per mm at a place.
 float matter_at(vec3 t) {
     float there, value = seen_value(t, there);
-    if (there == 0.0) return 0.0;
-#ifdef TRANSFER_2D
-    return classify(value, value, length(volume_gradient(t))).a;
-#else
-    return classify_extinction(value, value);
-#endif
+    return there == 0.0 ? 0.0 : extinction_around(value, value, t);
 }

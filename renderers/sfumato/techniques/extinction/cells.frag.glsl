@@ -33,10 +33,7 @@ void main() {
     for (int i = 0; i < SUB * SUB * SUB; ++i) {
         vec3 share = (vec3(float(i % SUB), float((i / SUB) % SUB), float(i / (SUB * SUB))) + 0.5) / float(SUB);
         vec3 t = corner + u_cell * share;
-        float value = volume_value(t), magnitude = 0.0;
-#ifdef TRANSFER_2D
-        magnitude = length(volume_gradient(t));
-#endif
+        float value = volume_value(t), magnitude = steepness(value, value, t);
         vec4 here = classify(value, value, magnitude) * kept_point(t);
         float dense = float(here.a >= u_dense);
         matter += vec3(here.a * (1.0 - dense), here.a * dense, dense / u_length);

@@ -45,12 +45,8 @@ void main() {
     vec3 here = a + b * z;
     vec2 kept = kept_range(here, vec3(0.0), vec2(0.0, 1.0));    // the slice as a whole or not at all: jitter smooths the edge
     if (kept.x >= kept.y) discard;
-#ifdef TRANSFER_2D
-    float magnitude = length(volume_gradient(here));
-#else
-    const float magnitude = 0.0;
-#endif
     float enter = volume_value(a + b * (z + half_slab)), leave = volume_value(a + b * (z - half_slab));
+    float magnitude = steepness(enter, leave, here);
     vec4 mean = classify(enter, leave, magnitude);
     if (mean.a <= 0.0) discard;
 

@@ -35,12 +35,8 @@ float transmitted() {
     vec2 kept = kept_range(here, vec3(0.0), vec2(0.0, 1.0));
     if (kept.x >= kept.y) return 1.0;
     vec3 half_slab = u_along * (0.5 * u_spacing);
-#ifdef TRANSFER_2D
-    float magnitude = length(volume_gradient(here));
-#else
-    const float magnitude = 0.0;
-#endif
-    vec4 mean = classify(volume_value(here + half_slab), volume_value(here - half_slab), magnitude);
+    float s0 = volume_value(here + half_slab), s1 = volume_value(here - half_slab);
+    vec4 mean = classify(s0, s1, steepness(s0, s1, here));
     return exp(-mean.a * u_spacing * u_light_secant);
 }
 

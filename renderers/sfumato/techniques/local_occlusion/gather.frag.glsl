@@ -25,7 +25,7 @@ float matter(vec3 t, out vec3 shining) {
     float there, value = seen_value(t, there), gradient = 0.0;
     if (there == 0.0) return 0.0;
 #ifdef TRANSFER_2D
-    gradient = length(volume_gradient(t));
+    gradient = steepness(value, value, t);
     float tau = classify(value, value, gradient).a;
 #else
     float tau = classify_extinction(value, value);
