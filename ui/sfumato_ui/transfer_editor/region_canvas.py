@@ -220,7 +220,11 @@ class RegionCanvas(QWidget):
     def _areas(self) -> painting.Areas:
         metrics = QFontMetricsF(painting.small(self.font()))
         return region_painting.areas_of(
-            self.width(), self.height(), metrics.height(), metrics.horizontalAdvance("00000") + 2
+            self.width(),
+            self.height(),
+            metrics.height(),
+            metrics.horizontalAdvance("00000") + 2,
+            metrics.horizontalAdvance(self.unit),
         )
 
     def paintEvent(self, event: QPaintEvent) -> None:

@@ -60,6 +60,7 @@ class RegionEditor(QWidget):
             "Glow of the shape", ((0.0, 4.0),), 0.0, decimals=2, step=0.05, limits=(0, 100),
             tip="Light that the tissue gives off by itself in its colour, per unit distance",
         )  # fmt: skip
+        self._glow_tip = self.glow.toolTip()
         self._make_menu()
         self._lay_out()
         self._connect()
@@ -148,6 +149,8 @@ class RegionEditor(QWidget):
         self.color.set_color(region.color)
         self.glow.set_number(max(region.emission))
         why = "The curve's points have their own: choose 1D to change them"
+        for part in (self.glow, self.glow.label, self.glow.slider, self.glow.number):
+            part.setToolTip(why if curve else self._glow_tip)
         self.color.setEnabled(not curve)
         self.color.setToolTip(why if curve else "Colour of the shape")
         self.glow.setEnabled(not curve)

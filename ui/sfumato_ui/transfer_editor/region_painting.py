@@ -23,14 +23,14 @@ _COARSE = 2
 #: How far the densest bin's lightness is from the ground's, of the way to the muted text's.
 _REACH = 0.85
 #: Opacity in the plot of what is opaque.
-_FILL = 0.7
+_FILL = 0.5
 
 
-def areas_of(width: float, height: float, line: float, gutter: float) -> Areas:
-    """Divide the widget: as for one dimension, without the strip of colours."""
+def areas_of(width: float, height: float, line: float, gutter: float, unit: float) -> Areas:
+    """Divide the widget: as for one dimension, without the strip of colours; `unit` is the width of the gradients'."""
     box = QRectF(0.5, 0.5, width - 1, height - line - 4)
     inside = box.width() - 2 * _INSET - gutter
-    marks = QRectF(box.left() + _INSET, box.top() + 3, inside, line + 3)
+    marks = QRectF(box.left() + _INSET, box.top() + 3, box.width() - _INSET - unit - 20, line + 3)
     top = marks.bottom() + 5
     plot = QRectF(marks.left(), top, inside, box.bottom() - 9 - top)
     strip = QRectF(plot.left(), plot.bottom(), plot.width(), 0)
