@@ -292,7 +292,9 @@ class MainWindow(QMainWindow):
     def _show_material(self, found: Found) -> None:
         """Show where a material that was picked lies in the function."""
         self.panel.setCurrentWidget(self.material_page)
-        self.material_page.transfer.pick(found)
+        transfer = self.material_page.transfer
+        transfer.pick(found)
+        self.material_page.ensureWidgetVisible(transfer.shapes.plot if transfer.dimensions.two else transfer.plot)
 
     def _show_building(self, done: float, text: str) -> None:
         """Tell how far meshes are, unless the bar tells of an error or asks something."""

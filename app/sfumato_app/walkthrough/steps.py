@@ -215,10 +215,29 @@ def _pick(hand: Hand) -> None:
     hand.rest()
 
 
+def _shapes(hand: Hand) -> None:
+    """Choose a function of two dimensions if there is one, else make it one; cut it to steeper gradients."""
+    page = hand.window.material_page
+    gallery, transfer = page.presets, page.transfer
+    page.ensureWidgetVisible(gallery)
+    glass = next((i for i in map(gallery.item, range(gallery.count())) if i.text() == "Glass skin"), None)
+    if glass is not None:
+        hand.click(gallery.viewport(), gallery.visualItemRect(glass).center())
+    else:
+        hand.click(transfer.dimensions.buttons[1])
+    pause(100)
+    page.ensureWidgetVisible(transfer.shapes)
+    start = transfer.shapes.plot.handle_places()["lower"]
+    hand.drag(transfer.shapes.plot, start, start - QPointF(0, 8))
+    hand.rest()
+
+
 # -- View ------------------------------------------------------------------------------------------
 def _view(hand: Hand) -> None:
     hand.window.viewport.setFocus()
     hand.press(Qt.Key.Key_Escape)
+    _undo(hand)
+    _undo(hand)
     hand.choose_tab(2)
     hand.click(hand.window.view_page.parallel, QPoint(12, hand.window.view_page.parallel.height() // 2))
     hand.rest()
@@ -385,6 +404,11 @@ WALK: tuple[Step, ...] = (
     ("preset", "Another preset", _preset),
     ("point", "A point of the function is dragged", _drag_point),
     ("pick", "Pick: what lies under the pointer, found in the function", _pick),
+    (
+        "shapes",
+        "A function of value and gradient: only where values change steeply is anything seen",
+        _shapes,
+    ),
     ("view", "View: orthographic", _view),
     ("clip-plane", "A clip plane, moved by its handle", _clip_plane),
     ("crop", "The crop box, moved by its handle", _crop),

@@ -295,4 +295,4 @@ class RegionCanvas(QWidget):
             opacity = float(self.transfer.evaluate_2d(np.array([value]), np.array([gradient]))[0, 3])
         zero = self._line.zero or 0.0
         shown = f"{painting.text_of(value - zero, self._line.decimals)} {self._line.unit}".strip()
-        return f"{shown}   {painting.text_of(gradient, self.decimals)} {self.unit}   {100 * opacity:.3g} %"
+        return f"{shown}   {painting.text_of(gradient, self.decimals)} {self.unit}   {round(100 * opacity, 2):g} %"
