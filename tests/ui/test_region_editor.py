@@ -104,6 +104,12 @@ def test_the_switch_keeps_the_picture_and_loses_nothing(window: MainWindow, user
         window.editor.undo()
     assert window.editor.scene.transfer == first
     assert transfer.dimensions.buttons[0].isChecked()
+    click(qtbot, transfer.dimensions.buttons[1])
+    click(qtbot, transfer.shapes.duplicate)
+    click(qtbot, transfer.dimensions.buttons[0])
+    window.material_page.presets.setCurrentRow(1)
+    click(qtbot, transfer.dimensions.buttons[1])
+    assert len(window.editor.scene.transfer.regions) == 1, "another function begins anew"
 
 
 def test_shapes_of_another_volume_do_not_come_back(window: MainWindow, qtbot: QtBot) -> None:
@@ -131,18 +137,15 @@ def test_dragging_a_shape_is_one_step(plot: RegionPlot, user: Any) -> None:
 def test_the_viewport_follows_at_drag_quality(plot: RegionPlot, user: Any, qtbot: QtBot) -> None:
     window = plot.window()
     user.wait_for_picture()
-    before = user.pixels()
     start, drawn = place(plot, 80, 30), []
     window.worker.picture.connect(drawn.append)
     qtbot.mousePress(plot, LEFT, pos=start)
     qtbot.mouseMove(plot, start - QPoint(0, 60))
     assert window.editor.document.dragging
     qtbot.waitUntil(lambda: bool(drawn), timeout=30_000)
+    qtbot.mouseRelease(plot, LEFT, pos=start - QPoint(0, 60))
     assert drawn[0].interactive
     assert drawn[0].scene.transfer == window.editor.scene.transfer
-    qtbot.mouseRelease(plot, LEFT, pos=start - QPoint(0, 60))
-    user.wait_for_picture()
-    assert np.abs(user.pixels() - before).max() > 50
 
 
 def test_handles_stretch_and_are_hit_from_twelve_pixels_away(

@@ -294,7 +294,9 @@ class MainWindow(QMainWindow):
         self.panel.setCurrentWidget(self.material_page)
         transfer = self.material_page.transfer
         transfer.pick(found)
-        self.material_page.ensureWidgetVisible(transfer.shapes.plot if transfer.dimensions.two else transfer.plot)
+        self.material_page.ensureWidgetVisible(
+            transfer.shapes.plot if transfer.dimensions.two else transfer.plot
+        )
 
     def _show_building(self, done: float, text: str) -> None:
         """Tell how far meshes are, unless the bar tells of an error or asks something."""

@@ -27,8 +27,8 @@ class Dimensions(QWidget):
     def __init__(self, editor: Editor) -> None:
         super().__init__()
         self._editor = editor
-        #: Shapes that were there before, and of which volume.
-        self._left: tuple[weakref.ref[Volume] | None, tuple[Region, ...]] = (None, ())
+        #: Shapes that the switch left, of which volume and of a function of which name: others' do not come back.
+        self._left: tuple[weakref.ref[Volume] | None, str, tuple[Region, ...]] = (None, "", ())
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)
@@ -49,13 +49,11 @@ class Dimensions(QWidget):
         """Show which of the two a scene's function is."""
         for button, down in zip(self.buttons, (not self.two, self.two), strict=True):
             button.setChecked(down)
-        transfer = scene.transfer
-        if scene.volume is not None and transfer is not None and transfer.regions:
-            self._left = weakref.ref(scene.volume), transfer.regions
 
     def _to_one(self) -> None:
         scene = self._editor.scene
         if self.two and scene.transfer is not None and scene.volume is not None:
+            self._left = weakref.ref(scene.volume), scene.transfer.name, scene.transfer.regions
             flat = one_dimensional(scene.transfer, suggest_transfer(scene.volume))
             self._editor.change("Use the 1D function", transfer=flat)
         self.show_scene(self._editor.scene)
@@ -63,8 +61,9 @@ class Dimensions(QWidget):
     def _to_two(self) -> None:
         scene = self._editor.scene
         if not self.two and scene.transfer is not None and scene.volume is not None:
-            of, regions = self._left
-            kept = regions if of is not None and of() is scene.volume else ()
+            of, name, regions = self._left
+            same = of is not None and of() is scene.volume and name == scene.transfer.name
+            kept = regions if same else ()
             self._editor.change(
                 "Use a 2D function", transfer=two_dimensional(scene.transfer, scene.volume, kept)
             )

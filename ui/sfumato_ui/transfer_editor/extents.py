@@ -7,7 +7,6 @@ from collections.abc import Callable
 from qtpy.QtWidgets import QGridLayout, QLabel, QWidget
 
 from sfumato import Region
-from sfumato.scene import region_edit
 
 from ..sliders import NumberBox
 from ..theme import TARGET
@@ -57,10 +56,7 @@ class Extents(QWidget):
             if axis == 1 and extents[1][0] < 0 <= extents[1][1] and end == 1:
                 extents[1][0] = 0.0
             (v0, v1), (g0, g1) = extents
-            if g0 < g1:
-                self._plot.put_region(
-                    "Type the shape's extent", region_edit.with_extent(region, (v0, v1), (g0, g1)), True
-                )
+            self._plot.stretch("Type the shape's extent", (v0, v1), (g0, g1))
 
         return take
 
@@ -79,6 +75,8 @@ class Extents(QWidget):
                 box.setSingleStep(10.0**-decimals)
                 box.setSuffix(suffix)
                 limit = 100 * (max(abs(n) for n in numbers) + 1)
+                if least is not None and box is boxes[1]:
+                    least = box.singleStep()  # a shape has some height
                 box.setRange(min(number, -limit if least is None else least), limit)
                 box.setValue(number)
                 box.blockSignals(False)

@@ -143,6 +143,8 @@ class RegionCanvas(QWidget):
                 self.joint = first_look(scene.volume)
                 self._top = 1.05 * self.joint.usual
             self._count.want(scene.volume)
+        if not self.regions and self.drawing:
+            self.end_drawing()
         self._describe()
         self.update()
 

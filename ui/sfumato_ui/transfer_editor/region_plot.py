@@ -8,18 +8,16 @@ same by keys: see `_keys`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from qtpy.QtCore import QEvent, QPointF, Qt
 from qtpy.QtGui import QKeyEvent, QMouseEvent, QShowEvent, QWheelEvent
 
-from sfumato import Region, TransferFunction
 from sfumato.scene import region_edit
 
 from ..editing import Editor
 from .canvas import TransferCanvas
-from .new_shapes import LEAST, aside, drawn_region, new_region
-from .region_canvas import NAMES, RegionCanvas
+from .new_shapes import drawn_region
+from .region_edits import RegionEdits
 
 TIP = (
     "<p>How many voxels have a value (across) and a gradient magnitude (up), logarithmically: boundaries "
@@ -32,8 +30,8 @@ TIP = (
 )
 
 
-class RegionPlot(RegionCanvas):
-    """Edits the regions of the scene's function."""
+class RegionPlot(RegionEdits):
+    """Edits the regions of the scene's function by mouse and keys."""
 
     def __init__(self, editor: Editor, line: TransferCanvas) -> None:
         super().__init__(editor, line)
@@ -45,68 +43,6 @@ class RegionPlot(RegionCanvas):
         """Count values and gradients, if that is not done: only now they are seen."""
         super().showEvent(event)
         self.show_scene(self._editor.scene)
-
-    # -- edits ------------------------------------------------------------------------------------
-    def change_region(self, label: str, merge: bool = True, /, **fields: object) -> None:
-        """Change fields of the selected region."""
-        if self.region is not None:
-            self.put_region(label, replace(self.region, **fields), merge)  # type: ignore[arg-type]
-
-    def put_region(self, label: str, region: Region, merge: bool = False) -> None:
-        """Put another region in the place of the selected one."""
-        if self.transfer is not None:
-            changed = region_edit.with_region(self.transfer, self.selected, region)
-            self._apply(label, changed, self.selected, merge)
-
-    def add_shape(self, shape: str, at: QPointF | None = None) -> None:
-        """Add a region of a shape at a place, else at what was picked, else in the middle; or begin to draw one."""
-        if shape == "polygon":
-            self.drawing = True
-            self.setFocus()
-            self.update()
-            return
-        volume = self._volume
-        if volume is not None and self.transfer is not None:
-            plane = self.plane
-            about = plane.rect.center() if self.picked is None else plane.clamped(plane.at(*self.picked))
-            region = (
-                region_edit.whole_curve(volume)
-                if shape == "curve"
-                else new_region(shape, plane, about if at is None else at, self.regions)
-            )
-            self._apply(
-                f"Add a {NAMES[shape].lower()}", *region_edit.with_region_added(self.transfer, region)
-            )
-
-    def remove_region(self) -> None:
-        """Remove the selected region; the last one stays."""
-        if self.transfer is not None:
-            changed = region_edit.without_region(self.transfer, self.selected)
-            self._apply("Remove the shape", changed, min(self.selected, len(changed.regions) - 1))
-
-    def duplicate_region(self) -> None:
-        """Add a copy of the selected region, a little aside, over it."""
-        if self.transfer is None or self.region is None:
-            return
-        copy = aside(self.region, self.plane)
-        changed, index = region_edit.with_region_added(self.transfer, copy, self.selected + 1)
-        self._apply("Duplicate the shape", changed, index)
-
-    def reorder_region(self, by: int) -> None:
-        """Lay the selected region over (1) or under (-1) its neighbour."""
-        if self.transfer is not None:
-            self._apply(
-                "Lay the shape over others" if by > 0 else "Lay the shape under others",
-                *region_edit.reordered(self.transfer, self.selected, by),
-            )
-
-    def _apply(self, label: str, transfer: TransferFunction, index: int, merge: bool = False) -> None:
-        if transfer == self.transfer or self._editor.change(label, merge, transfer=transfer):
-            self.select(index)
-
-    def _least(self) -> tuple[float, float]:
-        across, up = self.plane.per_pixel
-        return LEAST * across, LEAST * up
 
     # -- mouse ------------------------------------------------------------------------------------
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -221,7 +157,11 @@ class RegionPlot(RegionCanvas):
         if not self.hasFocus() or self._volume is None:
             event.ignore()
             return
-        self._see(self.plane.zoomed(1.25 ** (event.angleDelta().y() / 120), event.position(), self.whole))
+        self._zoom(1.25 ** (event.angleDelta().y() / 120), event.position())
+
+    def _zoom(self, factor: float, about: QPointF | None = None) -> None:
+        plane = self.plane
+        self._see(plane.zoomed(factor, plane.rect.center() if about is None else about, self.whole))
 
     def _show_cursor(self, at: QPointF) -> None:
         shape = Qt.CursorShape
@@ -253,16 +193,15 @@ class RegionPlot(RegionCanvas):
             return self.duplicate_region if key == keys.Key_D else None
         if key == keys.Key_Escape:
             return self.end_drawing if self.drawing else None
-        middle = self.plane.rect.center()
         return {
             keys.Key_Delete: self.remove_region,
             keys.Key_Backspace: self.remove_region,
             keys.Key_Insert: lambda: self.add_shape("rectangle"),
             keys.Key_PageUp: lambda: self.reorder_region(1),
             keys.Key_PageDown: lambda: self.reorder_region(-1),
-            keys.Key_Plus: lambda: self._see(self.plane.zoomed(1.25, middle, self.whole)),
-            keys.Key_Equal: lambda: self._see(self.plane.zoomed(1.25, middle, self.whole)),
-            keys.Key_Minus: lambda: self._see(self.plane.zoomed(0.8, middle, self.whole)),
+            keys.Key_Plus: lambda: self._zoom(1.25),
+            keys.Key_Equal: lambda: self._zoom(1.25),
+            keys.Key_Minus: lambda: self._zoom(0.8),
             keys.Key_0: self.show_all,
         }.get(key)
 
@@ -281,8 +220,7 @@ class RegionPlot(RegionCanvas):
         least = self._least()
         half = max(v1 - v0 + wider * across, least[0]) / 2
         middle, top = (v0 + v1) / 2, max(g1 + taller * up, g0 + least[1])
-        stretched = region_edit.with_extent(self.region, (middle - half, middle + half), (g0, top))
-        self.put_region("Stretch the shape", stretched, True)
+        self.stretch("Stretch the shape", (middle - half, middle + half), (g0, top))
 
     def event(self, event: QEvent) -> bool:
         """Take the keys that act here before the window's shortcuts do."""
