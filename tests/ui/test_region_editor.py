@@ -338,6 +338,10 @@ def test_presets_are_found_exported_and_imported(
     answer(page.files.get, shared)
     assert window.editor.scene.transfer.regions == (BOX, ROUND)
     assert page.presets.currentItem().text() == "shared"
+    built_in = page.presets.item(0).text()
+    page.own.write(shared, built_in, TransferFunction())
+    page.files.take(str(shared))
+    assert window.editor.scene.transfer.name == f"{built_in} 2", "names stay unique"
     page.files.words.setFocus()
     rows, height = page.presets.count(), page.presets.height()
     qtbot.keyClicks(page.files.words, "SHAR")

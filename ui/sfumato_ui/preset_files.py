@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from qtpy.QtCore import Qt, Signal
@@ -27,6 +27,8 @@ class PresetFiles(QWidget):
         Where an imported one is kept.
     shown : callable
         Returns the function that is exported, with its name.
+    taken : callable
+        Returns the names that others than the own presets have.
     """
 
     #: The user looks for presets that hold these words.
@@ -35,9 +37,14 @@ class PresetFiles(QWidget):
     imported = Signal(str)
     failed = Signal(str)
 
-    def __init__(self, own: OwnPresets, shown: Callable[[], TransferFunction | None]) -> None:
+    def __init__(
+        self,
+        own: OwnPresets,
+        shown: Callable[[], TransferFunction | None],
+        taken: Callable[[], Iterable[str]],
+    ) -> None:
         super().__init__()
-        self._own, self._shown = own, shown
+        self._own, self._shown, self._taken = own, shown, taken
         self.words = QLineEdit()
         self.words.setPlaceholderText("Find a preset")
         self.words.setAccessibleName("Find a preset")
@@ -66,12 +73,18 @@ class PresetFiles(QWidget):
         """Keep the function of a file among the own presets; a name that is taken gets a number."""
         try:
             told, transfer = self._own.read(Path(path))
-            name = self._own.free_name(told or Path(path).stem)
+            name = self._free_name(told or Path(path).stem)
             self._own.save(name, transfer)
         except (OSError, ValueError, RecursionError, SfumatoError) as error:
             self.failed.emit(f"{Path(path).name} cannot be imported: {str(error).splitlines()[0]}")
         else:
             self.imported.emit(name)
+
+    def _free_name(self, wanted: str) -> str:
+        """Return a name like the wanted one that no preset has."""
+        stem, taken = self._own.free_name(wanted), {name.lower() for name in self._taken()}
+        names = (stem, *(f"{stem} {i}" for i in range(2, 1000)))
+        return next(n for n in names if n.lower() not in taken and not self._own.complaint(n))
 
     def _ask_export(self) -> None:
         transfer = self._shown()

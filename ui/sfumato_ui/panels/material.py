@@ -42,7 +42,9 @@ class MaterialPage(Page):
         self.own = OwnPresets()
         self._told: tuple[str, ...] = ()
         self.bar, self.ask, self.presets = PresetBar(), AskLine(), PresetGallery()
-        self.files = PresetFiles(self.own, lambda: editor.scene.transfer)
+        self.files = PresetFiles(
+            self.own, lambda: editor.scene.transfer, lambda: [p.name for p in self._presets]
+        )
         self.transfer = TransferEditor(editor)
         self.more = Section("More", "material_more")
         self._quiet = QTimer(self)
