@@ -9,7 +9,6 @@ from qtpy.QtCore import QTimer
 from qtpy.QtGui import QHideEvent, QImage, QShowEvent
 
 from sfumato import Scene, SfumatoError, TransferFunction
-from sfumato.scene import transfer_edit
 from sfumato.scene.presets import Preset, presets_for
 
 from ..editing import Editor
@@ -22,6 +21,7 @@ from ..sliders import LabelledSlider
 from ..thumbnails import Thumbnails
 from ..transfer_editor import TransferEditor
 from .page import Page
+from .whole_function import WholeFunction
 
 #: Name of this tab's thumbnails, and the quiet time in milliseconds after which they are drawn anew.
 GROUP = "presets"
@@ -91,9 +91,9 @@ class MaterialPage(Page):
         self.files.sought.connect(self.presets.seek)
         self.files.failed.connect(editor.rejected)
         self.files.imported.connect(self._take_imported)
-        self._bind(self.density, "Change the density", self._set_density)
-        self._bind(self.level, "Shift the function", self._set_shift)
-        self._bind(self.width_of_all, "Widen the function", self._set_width)
+        self._bind(self.density, "Change the density", WholeFunction.with_density)
+        self._bind(self.level, "Shift the function", WholeFunction.with_shift)
+        self._bind(self.width_of_all, "Widen the function", WholeFunction.with_width)
         editor.changed.connect(self._on_changed)
         self._quiet.timeout.connect(self._want_pictures)
 
@@ -101,14 +101,14 @@ class MaterialPage(Page):
         self,
         slider: LabelledSlider,
         label: str,
-        function: Callable[[TransferFunction, float], TransferFunction],
+        function: Callable[[WholeFunction, float], TransferFunction],
     ) -> None:
         """Let a slider edit the transfer function; a drag is one step."""
 
         def edit(value: float) -> None:
-            transfer = self._editor.scene.transfer
-            if transfer is not None:
-                changed = function(transfer, value)
+            whole = self._whole()
+            if whole is not None:
+                changed = function(whole, value)
                 self._editor.change(label, not slider.slider.isSliderDown(), transfer=changed)
             self.refresh()
 
@@ -137,8 +137,9 @@ class MaterialPage(Page):
         self.bar.show_state(
             f"{name}, edited" if edited and name else "", self._is_own(current), scene.transfer is not None
         )
-        self.density.set_number(self._density())
-        shift, width = self._shift_and_width()
+        whole = self._whole()
+        self.density.set_number(whole.density if whole is not None else 1.0)
+        shift, width = whole.shift_and_width if whole is not None else (0.0, 1.0)
         self.level.set_number(shift)
         self.width_of_all.set_number(width)
 
@@ -214,6 +215,13 @@ class MaterialPage(Page):
         name = transfer.name if transfer is not None else ""
         return next((p for p in self._presets if name and p.name == name), None)
 
+    def _whole(self) -> WholeFunction | None:
+        """Return the scene's function beside its preset's."""
+        scene, origin = self._editor.scene, self._origin()
+        if scene.volume is None or scene.transfer is None:
+            return None
+        return WholeFunction(scene.volume, scene.transfer, origin.transfer if origin is not None else None)
+
     def _is_own(self, row: int | None) -> bool:
         return row is not None and row >= len(self._presets) - len(self.own.presets)
 
@@ -235,43 +243,6 @@ class MaterialPage(Page):
         self._fill()
         self._choose(next(row for row, p in enumerate(self._presets) if self._is_own(row) and p.name == name))
         self.refresh()
-
-    # -- density, shift, width --------------------------------------------------------------------
-    def _base(self) -> float:
-        """Return the unit distance in mm that counts as density 1."""
-        volume, origin = self._editor.scene.volume, self._origin()
-        assert volume is not None
-        return (origin.transfer.unit_distance if origin is not None else None) or volume.unit_distance
-
-    def _density(self) -> float:
-        transfer = self._editor.scene.transfer
-        return self._base() / (transfer.unit_distance or self._base()) if transfer is not None else 1.0
-
-    def _set_density(self, transfer: TransferFunction, density: float) -> TransferFunction:
-        return replace(transfer, unit_distance=self._base() / density)
-
-    def _span(self) -> float:
-        """Return one per cent of the volume's values."""
-        volume = self._editor.scene.volume
-        low, high = volume.value_range if volume is not None else (0.0, 1.0)
-        return (high - low) / 100 or 0.01
-
-    def _shift_and_width(self) -> tuple[float, float]:
-        """Return how far the function lies from its preset in per cent, and how much wider it is."""
-        transfer, origin = self._editor.scene.transfer, self._origin()
-        if transfer is None or origin is None:
-            return 0.0, 1.0
-        level, width = transfer_edit.level_and_width(transfer)
-        first, first_width = transfer_edit.level_and_width(origin.transfer)
-        ratio = width / first_width if first_width > 0 and width > 0 else 1.0
-        return (level - first) / self._span(), ratio
-
-    def _set_shift(self, transfer: TransferFunction, percent: float) -> TransferFunction:
-        return transfer.rescaled(1.0, (percent - self._shift_and_width()[0]) * self._span())
-
-    def _set_width(self, transfer: TransferFunction, ratio: float) -> TransferFunction:
-        level = transfer_edit.level_and_width(transfer)[0]
-        return transfer_edit.scaled_about(transfer, level, ratio / self._shift_and_width()[1])
 
     # -- own presets ------------------------------------------------------------------------------
     def _ask_save(self) -> None:
