@@ -79,7 +79,7 @@ class RegionEditor(QWidget):
 
     def _lay_out(self) -> None:
         shapes = QHBoxLayout()
-        shapes.setSpacing(2)
+        shapes.setSpacing(0)  # the list needs the room
         shapes.addWidget(self.shape, 1)
         for button in (self.add, self.duplicate, self.over, self.under, self.remove):
             shapes.addWidget(button)
