@@ -79,6 +79,41 @@ def test_a_point_is_hit_from_twelve_pixels_away_and_keeps_its_distance(plot: Tra
     assert points(plot)[1].opacity < 0.6
 
 
+def test_points_snap_to_the_histograms_peaks_unless_ctrl_is_held(plot: TransferPlot, user: Any) -> None:
+    peak = plot.peaks[-1]
+    assert peak > 150, "the ball's own value"
+    beside = place(plot, peak, 0.5) - QPoint(4, 0)
+    user.drag(plot, place(plot, 120, 0.9), beside)
+    assert points(plot)[1].value == pytest.approx(peak, abs=1e-3)
+    undo(plot)
+    user.drag(plot, place(plot, 120, 0.9), beside, keys=CONTROL)
+    assert points(plot)[1].value == pytest.approx(peak - 4 * plot.scale.per_pixel, abs=plot.scale.per_pixel)
+    assert points(plot)[1].value != pytest.approx(peak, abs=0.5 * plot.scale.per_pixel)
+
+
+def test_colours_of_a_map_and_the_mirror(plot: TransferPlot, user: Any, qtbot: QtBot) -> None:
+    page = plot.window().material_page
+    page.more.set_open(True)
+    row = page.maps
+    page.ensureWidgetVisible(row)
+    row.maps.setFocus()
+    for key, title in ((Qt.Key.Key_Down, "Grey"), (Qt.Key.Key_Down, "Bone"), (Qt.Key.Key_Up, "Grey")):
+        qtbot.keyClick(row.maps, key)
+        assert plot.window().editor.document.undo_label == f"Colour by {title}"
+        assert row.maps.currentText() == title
+    colours = [point.color for point in points(plot)]
+    assert all(r == pytest.approx(g) == pytest.approx(b) for r, g, b in colours)
+    assert [p.opacity for p in (points(plot)[0], points(plot)[-1])] == [0.0, 0.9]
+    while plot.window().editor.document.undo_label:
+        undo(plot)
+    assert points(plot) == START
+    assert row.maps.currentIndex() == 0, "no map any more"
+    qtbot.mouseClick(row.mirror, Qt.MouseButton.LeftButton)
+    assert [(p.value, p.opacity) for p in points(plot)] == [(20, 0.9), (120, 0.0)]
+    undo(plot)
+    assert points(plot) == START
+
+
 def test_a_point_stops_at_its_neighbour_and_at_the_edges(plot: TransferPlot, user: Any) -> None:
     user.drag(plot, place(plot, 120, 0.9), QPoint(-30, -60))
     assert points(plot)[1].value == 20

@@ -17,6 +17,7 @@ from sfumato import Geometry, Scene, SfumatoError, Tracing, Volume
 from sfumato.export.png import carries_scene, open_png, read_scene_data
 from sfumato.geometry import is_geometry
 from sfumato.geometry.directions import LEAST_ANISOTROPY
+from sfumato.scene.peaks import peaks_of
 from sfumato.scene.presets import presets_for, suggest_view
 
 from .camera_moves import whole_view
@@ -314,7 +315,7 @@ def _read_volume(wish: Wish, progress: Any, cancel: Any) -> Volume:
 def _prepare(scene: Scene) -> None:
     """Compute here, off the window's thread, what is slow to compute once: content hash, histogram, presets."""
     if scene.volume is not None:
-        _ = scene.volume.key, scene.volume.histogram, presets_for(scene.volume)
+        _ = scene.volume.key, scene.volume.histogram, presets_for(scene.volume), peaks_of(scene.volume)
 
 
 def _several_series(path: str) -> list[Any]:

@@ -48,7 +48,8 @@ def find_moved(named: str | os.PathLike[str], key: str, folders: Iterable[str | 
             continue
         notice = f"The volume has moved: it was found as {place}."
         return replace(volume, info=replace(volume.info, notices=(*volume.info.notices, notice)))
-    what = "its content is not the scene's volume" if named.exists() else "the scene's volume is not there"
+    other = "this is not the volume that the scene was made with (its content differs)"
+    what = other if named.exists() else "the scene's volume is not there"
     also = f", nor is it {looked} other{'s' * (looked > 1)} that may have been it" if looked else ""
     raise MissingVolume(named, what + also, "put it beside the scene, or open the volume by itself")
 

@@ -12,6 +12,7 @@ from sfumato import Scene, SfumatoError, TransferFunction
 from sfumato.scene.presets import Preset, presets_for
 
 from ..editing import Editor
+from ..map_row import MapRow
 from ..own_presets import OwnPresets
 from ..preset_bar import AskLine, PresetBar
 from ..preset_files import PresetFiles
@@ -57,6 +58,8 @@ class MaterialPage(Page):
         self.more.add(shapes.extents)
         for slider in (shapes.glow, self.level, self.width_of_all, self.transfer.glow):
             self.more.add(slider)
+        self.maps = MapRow(editor)
+        self.more.add(self.maps)
         self.more.add(self.files)
         self.finish()
         self._connect()
@@ -138,6 +141,7 @@ class MaterialPage(Page):
             f"{name}, edited" if edited and name else "", self._is_own(current), scene.transfer is not None
         )
         whole = self._whole()
+        self.maps.refresh()
         self.density.set_number(whole.density if whole is not None else 1.0)
         shift, width = whole.shift_and_width if whole is not None else (0.0, 1.0)
         self.level.set_number(shift)

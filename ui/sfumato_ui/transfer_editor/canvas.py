@@ -12,6 +12,7 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from sfumato import Scene, TransferFunction, Volume
 from sfumato.scene import transfer_edit
+from sfumato.scene.peaks import peaks_of
 from sfumato.scene.presets.values import hounsfield_zero
 
 from ..color_button import to_srgb
@@ -22,6 +23,8 @@ from .scale import Scale, decimals_for
 
 #: Hit radius of a point in pixels.
 HIT = 12.0
+#: Distance in pixels within which a point snaps to a peak of the histogram.
+SNAP = 5.0
 #: Least part of the whole range that the view can show.
 CLOSEST = 1 / 400
 
@@ -39,6 +42,8 @@ class TransferCanvas(QWidget):
         self._histogram = histogram.Histogram(np.zeros(0), np.zeros(0))
         #: Value that means 0 HU, if the values are Hounsfield units.
         self.zero: float | None = None
+        #: Values at the peaks of the histogram, to which points snap.
+        self.peaks: tuple[float, ...] = ()
         self._range, self._whole = (0.0, 1.0), (0.0, 1.0)
         self._selected = -1
         self._hover: QPointF | None = None
@@ -97,6 +102,7 @@ class TransferCanvas(QWidget):
         self._selected, self._drag, self.picked = -1, None, None
         if scene.volume is None:
             return
+        self.peaks = peaks_of(scene.volume)
         self.zero = hounsfield_zero(scene.volume)
         self._histogram = histogram.log_histogram(scene.volume)
         self._range = histogram.first_range(scene.volume, scene.transfer, self.zero)
@@ -166,6 +172,11 @@ class TransferCanvas(QWidget):
     @property
     def _zoomed(self) -> bool:
         return self._range[1] - self._range[0] < 0.98 * (self._whole[1] - self._whole[0])
+
+    def snapped(self, value: float) -> float:
+        """Return the peak of the histogram that is so near to a value that a point snaps to it; else the value."""
+        near = min(self.peaks, key=lambda peak: abs(peak - value), default=value)
+        return near if abs(near - value) <= SNAP * self.scale.per_pixel else value
 
     def _point_under(self, at: QPointF) -> int:
         if self.transfer is None:
@@ -237,6 +248,7 @@ class TransferCanvas(QWidget):
         painting.draw_histogram(painter, scale, self._histogram, theme)
         painter.setClipping(False)
         painting.draw_lines(painter, scale, theme)
+        painting.draw_peaks(painter, scale, self.peaks, theme)
         painting.draw_axis(painter, areas, scale, theme, self.zero or 0.0, self.unit, self.decimals)
         if self.zero is not None:
             painting.draw_tissues(painter, areas, scale, theme, self.zero)

@@ -197,6 +197,17 @@ def draw_point(
     painter.drawEllipse(at, radius, radius)
 
 
+def draw_peaks(painter: QPainter, scale: Scale, peaks: tuple[float, ...], theme: Theme) -> None:
+    """Mark the histogram's peaks below it: points snap to them."""
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(theme.muted))
+    foot = scale.rect.bottom()
+    for peak in peaks:
+        x = scale.at(peak, 0).x()
+        if scale.rect.left() <= x <= scale.rect.right():
+            painter.drawPolygon([QPointF(x, foot - 5), QPointF(x - 3, foot), QPointF(x + 3, foot)])
+
+
 def draw_picked(painter: QPainter, scale: Scale, value: float, theme: Theme) -> None:
     """Draw where the value lies that was picked in the picture."""
     x = scale.at(value, 0).x()

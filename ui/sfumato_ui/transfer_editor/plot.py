@@ -29,6 +29,7 @@ DEAD = 8.0
 LEVEL = "Move the transfer function"
 TIP = (
     "<p>Drag a point. Click on the curve to add one, or double-click anywhere; Del removes it. "
+    "Points snap to the histogram's peaks, with Ctrl they do not. "
     "Shift-drag moves the whole function, up and down widens it. The wheel zooms.</p>"
     "<p>Keys: arrows move the point (shift: ten times as far), Ctrl+arrows select, Alt+arrows move the whole "
     "function, Insert adds a point, + and \N{MINUS SIGN} zoom, 0 shows all.</p>"
@@ -144,7 +145,9 @@ class TransferPlot(TransferCanvas):
         def move(event: QMouseEvent) -> None:
             transfer, at = self.transfer, event.position() + held
             if transfer is not None and self.selected >= 0:
+                free = event.modifiers() & Qt.KeyboardModifier.ControlModifier
                 value = min(max(scale.value(at.x()), low), high)
+                value = value if free else self.snapped(value)
                 value = transfer_edit.between_neighbours(transfer, self.selected, value)
                 self.change_point("Move the point", value=value, opacity=scale.opacity(at.y()))
 
