@@ -45,6 +45,12 @@ def test_a_material_is_found_in_the_function(shown: MainWindow, qtbot: QtBot, ha
     assert tool.handles(view)[0].at[0] < middle.x()
     assert shown.editor.scene is start
     assert not shown.editor.document.undo_label
+    # What it says follows the function.
+    said = tool.handles(view)[0].name
+    shown.editor.change("Fade", **{"transfer.points.1.opacity": 0.1})
+    assert tool.handles(view)[0].name != said
+    shown.editor.undo()
+    assert tool.handles(view)[0].name == said
     # Over nothing a drag turns the subject, as with other tools.
     hand_of(shown).drag(shown.viewport, QPoint(6, 6), QPoint(40, 6))
     assert shown.editor.scene.camera != start.camera

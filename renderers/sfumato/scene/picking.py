@@ -83,9 +83,9 @@ def material_under(scene: Scene, x: float, y: float, aspect: float) -> Found | N
     sample = order[_half_of(seen[order])]
     value, point = float(values[sample]), points[_half_of(seen)]
     steepness = np.linalg.norm(value_gradient(scene, points[sample : sample + 1]), axis=1)
-    opacity = scene.transfer.evaluate_2d(np.array([value]), steepness)[0, 3]
+    gradient = float(steepness[0])
     place = float(point[0]), float(point[1]), float(point[2])
-    return Found(place, value, float(opacity), float(steepness[0]))
+    return Found(place, value, scene.transfer.opacity_of(value, gradient), gradient)
 
 
 def _half_of(weights: np.ndarray) -> int:

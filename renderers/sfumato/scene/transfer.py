@@ -120,6 +120,10 @@ class TransferFunction:
             -np.log1p(-np.minimum(opacity, MAX_OPACITY)) / (self.unit_distance or unit_distance)
         )
 
+    def opacity_of(self, value: float, gradient: float = 0.0) -> float:
+        """Return the opacity of one value and gradient magnitude, 0 to 1, per unit distance."""
+        return float(self.evaluate_2d(np.array([value]), np.array([gradient]))[0, 3])
+
     def evaluate_2d(self, values: np.ndarray, gradients: np.ndarray) -> np.ndarray:
         """Return colour, opacity and emission on a grid of values and gradient magnitudes.
 

@@ -46,7 +46,10 @@ class PickTool(HandleTool):
         at = view.place(np.asarray(found.point)) if found is not None else None
         if found is None or at is None:
             return []
-        return [Handle("material", self.words(found.value, found.opacity), at, None, "round")]
+        # The function may be another by now: what is said is what it says today.
+        transfer = self._editor.scene.transfer
+        opacity = transfer.opacity_of(found.value, found.gradient) if transfer is not None else found.opacity
+        return [Handle("material", self.words(found.value, opacity), at, None, "round")]
 
     @property
     def _current(self) -> Found | None:
