@@ -105,7 +105,7 @@ def plain_presets(levels: Levels) -> tuple[Preset, ...]:
     return (
         _surface_preset(levels, CLAY, levels.surface, "Solid", solid, ""),
         _surface_preset(
-            levels, CLAY, levels.inner, "Solid inner parts", "The surface of the brighter parts", ""
+            levels, CLAY, levels.inner, "Solid inside", "The surface of the brighter parts", ""
         ),
         _surface_preset(levels, RED, levels.surface, "Solid red", solid + ", in the colour of blood", ""),
         Preset(
