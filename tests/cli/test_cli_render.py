@@ -55,12 +55,14 @@ def test_scene_file_and_another_volume(run, ball, tmp_path):
     scene.save("study.sfumato")
     assert run("render", "study.sfumato", "--size", SIZE).status == 0
     np.testing.assert_array_equal(pixels("study.png"), sfumato.render(scene, size=(40, 30)))
-    ball.rename(tmp_path / "moved.npy")
+    (tmp_path / "far" / "away").mkdir(parents=True)
+    moved = ball.rename(tmp_path / "far" / "away" / "moved.npy")
     assert "ball.npy" in run("render", "study.sfumato", "--size", SIZE).failed_with(1)
-    assert (
-        run("render", "study.sfumato", "--volume", "moved.npy", "--size", SIZE, "-o", "two.png").status == 0
-    )
+    assert run("render", "study.sfumato", "--volume", moved, "--size", SIZE, "-o", "two.png").status == 0
     np.testing.assert_array_equal(pixels("study.png"), pixels("two.png"))
+    moved.rename(tmp_path / "renamed.npy")  # beside the scene it is known by its content
+    assert run("render", "study.sfumato", "--size", SIZE, "-o", "three.png").status == 0
+    np.testing.assert_array_equal(pixels("study.png"), pixels("three.png"))
 
 
 def test_default_name_is_in_this_folder(run, ball, tmp_path):
