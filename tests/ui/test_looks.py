@@ -86,7 +86,7 @@ def settle(window: MainWindow, qtbot: QtBot) -> None:
     qtbot.waitUntil(lambda: window.thumbnails.idle, timeout=60_000)
 
 
-@pytest.mark.parametrize("theme", ["dark", "light"])
+@pytest.mark.parametrize("theme", ["dark", pytest.param("light", marks=pytest.mark.slow)])
 def test_each_panel_looks_as_accepted(window: MainWindow, qtbot: QtBot, check: Check, theme: str) -> None:
     window.set_theme(theme)
     for page, name in (
