@@ -30,6 +30,8 @@ MEAN, WORST = 1.5, 70.0
 
 Check = Callable[[str, QWidget], None]
 
+pytestmark = pytest.mark.slow
+
 
 def pixels(widget: QWidget) -> np.ndarray:
     """Return what a widget shows, shape (height, width, 3)."""
@@ -86,7 +88,7 @@ def settle(window: MainWindow, qtbot: QtBot) -> None:
     qtbot.waitUntil(lambda: window.thumbnails.idle, timeout=60_000)
 
 
-@pytest.mark.parametrize("theme", ["dark", pytest.param("light", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("theme", ["dark", "light"])
 def test_each_panel_looks_as_accepted(window: MainWindow, qtbot: QtBot, check: Check, theme: str) -> None:
     window.set_theme(theme)
     for page, name in (
