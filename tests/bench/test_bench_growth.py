@@ -62,6 +62,7 @@ def test_time_at_the_ceiling():
 
 
 @pytest.mark.gpu
+@pytest.mark.slow
 def test_growth_has_times_and_fractions(tmp_path):
     growth = measure_growth(Point(24, 16, 32, 1), {"viewport": (16, 24)}, techniques=("raycast",))
     assert len(growth.samples) == 2

@@ -100,6 +100,7 @@ def test_contestants_by_name() -> None:
 
 
 @pytest.mark.gpu
+@pytest.mark.slow
 def test_command_tells_everything(run: Callable[..., object], tmp_path: Path) -> None:
     pytest.importorskip("numba")
     pytest.importorskip("matplotlib")

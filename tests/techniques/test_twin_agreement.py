@@ -78,8 +78,11 @@ def test_unlit_slices(volume: Volume, parallel: bool) -> None:
 @pytest.mark.parametrize("parallel", [True, False])
 @pytest.mark.parametrize(
     ("tilt", "aperture", "rotation"),
-    [(0, 20, 0), (20, 5, 45), (37, 20, 135), (55, 20, 300), (37, 30, 20), (150, 20, 200)],
-)
+    [
+        (0, 20, 0), (37, 20, 135), (150, 20, 200),
+        *(pytest.param(*angles, marks=pytest.mark.slow) for angles in ((20, 5, 45), (55, 20, 300), (37, 30, 20))),
+    ],
+)  # fmt: skip
 def test_angles_and_cameras(
     volume: Volume, tilt: float, aperture: float, rotation: float, parallel: bool
 ) -> None:
@@ -88,7 +91,9 @@ def test_angles_and_cameras(
 
 @pytest.mark.parametrize("parallel", [True, False])
 @pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("lights", [FOUR[:1], FOUR], ids=["one", "four"])
+@pytest.mark.parametrize(
+    "lights", [FOUR[:1], pytest.param(FOUR, marks=pytest.mark.slow)], ids=["one", "four"]
+)
 def test_forms_and_numbers_of_lights(
     volume: Volume, form: str, lights: tuple[Light, ...], parallel: bool
 ) -> None:

@@ -1,4 +1,4 @@
-"""How the window and its panels look: compared with accepted screenshots, loosely enough for another hinting of letters.
+"""How window and panels look: compared with accepted screenshots, loosely enough for another hinting of letters.
 
 ``--accept-images`` takes what is seen now: look at it first. Where another font or graphics device is in use than on
 the machine of the screenshots (DejaVu Sans, llvmpipe), the test is skipped and says so.
