@@ -191,8 +191,7 @@ class Files(QObject):
 
     def _on_missing(self, wish: Wish, message: str) -> None:
         """Let the user say where a scene's volume is now."""
-        self._on_failed(message)
-        self._bar.show_error(f"{self._bar.text}", {"Find it…": lambda: self._ask_for_volume(wish)})
+        self._on_failed(message, {"Find it…": lambda: self._ask_for_volume(wish)})
 
     def _ask_for_volume(self, wish: Wish) -> None:
         dialog = QFileDialog(self._window, f"Where is the volume of {wish.name}?", last_folder())
@@ -201,12 +200,12 @@ class Files(QObject):
         dialog.finished.connect(dialog.deleteLater)
         dialog.open()
 
-    def _on_failed(self, message: str) -> None:
+    def _on_failed(self, message: str, answers: dict[str, Callable[[], object]] | None = None) -> None:
         if self._wish.slot:  # it is offered again at the next start
             self._wish.slot.release()
         self._more.clear()
         kept = " What was open stays open." if is_open(self._editor.scene) else ""
-        self._bar.show_error(f"{message}.{kept}")
+        self._bar.show_error(f"{message}.{kept}", answers)
 
     def _ask_for_series(self, path: str, series: Any) -> None:
         dialog = SeriesDialog(path, series, self._window)

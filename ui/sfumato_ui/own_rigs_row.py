@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from qtpy.QtCore import Signal
-from qtpy.QtWidgets import QFileDialog, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from sfumato import Scene, SfumatoError
 from sfumato.scene.rig_files import SUFFIX, load_rig, normalised, write_rig
 from sfumato.scene.rigs import Rig
 
 from .auto_exposure import AutoExposure
+from .dialogs import ask_for_export, ask_for_import
 from .editing import Editor
 from .icons import icon
 from .own_rigs import OwnRigs
 from .preset_bar import AskLine
-from .recent import last_folder
 from .rigs_row import RigsRow
 from .theme import current_theme
 from .thumbnails import Thumbnails
@@ -155,11 +153,7 @@ class OwnRigsRow(QWidget):
 
     # -- sharing ----------------------------------------------------------------------------------
     def _ask_import(self) -> None:
-        dialog = QFileDialog(self.window(), "Import a rig", last_folder(), FILTER)
-        dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
-        dialog.fileSelected.connect(self.take)
-        dialog.finished.connect(dialog.deleteLater)
-        dialog.open()
+        ask_for_import(self.window(), "Import a rig", FILTER, self.take)
 
     def take(self, path: str) -> None:
         """Keep the rig of a file among the own ones; a name that is taken gets a number."""
@@ -175,13 +169,9 @@ class OwnRigsRow(QWidget):
         rig = self._chosen()
         if rig is None:
             return
-        start = str(Path(last_folder()) / f"{self._named(rig)}{SUFFIX}")
-        dialog = QFileDialog(self.window(), "Export the rig", start, FILTER)
-        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        dialog.setDefaultSuffix(SUFFIX[1:])
-        dialog.fileSelected.connect(lambda path: self._give(path, rig))
-        dialog.finished.connect(dialog.deleteLater)
-        dialog.open()
+        ask_for_export(
+            self.window(), "Export the rig", self._named(rig), SUFFIX, FILTER, lambda path: self._give(path, rig)
+        )
 
     def _give(self, path: str, rig: Rig) -> None:
         try:

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from qtpy.QtCore import Qt, Signal
-from qtpy.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QToolButton, QWidget
+from qtpy.QtWidgets import QHBoxLayout, QLineEdit, QToolButton, QWidget
 
 from sfumato import SfumatoError, TransferFunction
 
+from .dialogs import ask_for_export, ask_for_import
 from .icons import icon
 from .own_presets import SUFFIX, OwnPresets
-from .recent import last_folder
 from .theme import current_theme
 
 FILTER = f"Transfer functions (*{SUFFIX});;All files (*)"
@@ -63,11 +63,7 @@ class PresetFiles(QWidget):
         self.refresh_theme()
 
     def _ask_import(self) -> None:
-        dialog = QFileDialog(self.window(), "Import a preset", last_folder(), FILTER)
-        dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
-        dialog.fileSelected.connect(self.take)
-        dialog.finished.connect(dialog.deleteLater)
-        dialog.open()
+        ask_for_import(self.window(), "Import a preset", FILTER, self.take)
 
     def take(self, path: str) -> None:
         """Keep the function of a file among the own presets; a name that is taken gets a number."""
@@ -90,13 +86,10 @@ class PresetFiles(QWidget):
         transfer = self._shown()
         if transfer is None:
             return
-        start = str(Path(last_folder()) / f"{transfer.name or 'Transfer function'}{SUFFIX}")
-        dialog = QFileDialog(self.window(), "Export the function", start, FILTER)
-        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        dialog.setDefaultSuffix(SUFFIX[1:])
-        dialog.fileSelected.connect(lambda path: self._give(path, transfer))
-        dialog.finished.connect(dialog.deleteLater)
-        dialog.open()
+        name = transfer.name or "Transfer function"
+        ask_for_export(
+            self.window(), "Export the function", name, SUFFIX, FILTER, lambda path: self._give(path, transfer)
+        )
 
     def _give(self, path: str, transfer: TransferFunction) -> None:
         try:

@@ -221,7 +221,7 @@ class Viewport(QWidget):
             overlay.draw_centred(painter, self.rect(), self.empty_text)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if scene.volume is not None and scene.camera is not None:
-            known = scene.volume.info.orientation_known
+            known = lamp_places.orientation_known(scene)
             overlay.draw_letters(
                 painter, self.rect(), camera_moves.edge_letters(scene.camera) if known else None
             )
@@ -231,7 +231,7 @@ class Viewport(QWidget):
             lift = self.fontMetrics().height() + 22 if self.hint else 0
             overlay.draw_scale_bar(painter, self.rect(), scene.camera, lift)
         if self.cube.on and is_open(scene) and scene.camera is not None:
-            known = scene.volume is None or scene.volume.info.orientation_known
+            known = lamp_places.orientation_known(scene)
             self.cube.paint(painter, scene.camera, known, self.devicePixelRatioF())
         view = self.view
         if self._mark is not None and view is not None:

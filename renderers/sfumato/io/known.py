@@ -13,15 +13,15 @@ from ..scene import Volume
 MAX_HALVINGS = 3
 
 
+#: What is said of a volume whose key is another.
+OTHER = "this is not the volume that the scene was made with (its content differs)"
+
+
 class OtherContent(LoadError):  # noqa: N818  (it says what was found)
     """What lies at a path is not the volume that is looked for."""
 
     def __init__(self, path: object) -> None:
-        super().__init__(
-            path,
-            "this is not the volume that the scene was made with (its content differs)",
-            "open the volume by itself",
-        )
+        super().__init__(path, OTHER, "open the volume by itself")
 
 
 def load_known(path: str | os.PathLike[str], key: str | None = None) -> Volume:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..errors import LoadError
 from ..scene import Volume
-from .known import load_known
+from .known import OTHER, load_known
 
 #: Most files that are read in search of one, and most folders in which they are looked for.
 MOST_READ, MOST_FOLDERS = 12, 200
@@ -48,8 +48,7 @@ def find_moved(named: str | os.PathLike[str], key: str, folders: Iterable[str | 
             continue
         notice = f"The volume has moved: it was found as {place}."
         return replace(volume, info=replace(volume.info, notices=(*volume.info.notices, notice)))
-    other = "this is not the volume that the scene was made with (its content differs)"
-    what = other if named.exists() else "the scene's volume is not there"
+    what = OTHER if named.exists() else "the scene's volume is not there"
     also = f", nor is it {looked} other{'s' * (looked > 1)} that may have been it" if looked else ""
     raise MissingVolume(named, what + also, "put it beside the scene, or open the volume by itself")
 
