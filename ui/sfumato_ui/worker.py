@@ -53,6 +53,7 @@ SLOW_SECONDS = 0.5
 class RenderWorker(QObject):
     """Owns the renderer and its thread; the methods are called from the window's thread."""
 
+    #: A picture, told in the window's thread: all who listen hear of it within one event.
     picture = Signal(object)
     progress = Signal(float)
     #: The renderer is there (its name).
@@ -66,9 +67,13 @@ class RenderWorker(QObject):
     save_failed = Signal(str)
     #: A thumbnail is drawn (its request, the QImage).
     thumbnail = Signal(object, object)
+    #: The thread's word for `picture`: emitted there, each listener would get an event of its own, and for a moment
+    #: the viewport would show what the status line, the history and the messages know nothing of.
+    _drawn = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
+        self._drawn.connect(self.picture)
         self._renderer: Any = None
         self._wake = threading.Condition()
         self._view: ViewRequest | None = None
@@ -222,12 +227,12 @@ class RenderWorker(QObject):
                 seconds = time.perf_counter() - started
                 if not (accumulation.settled or request.interactive):
                     # Not yet one of the frames that count, but better than the last.
-                    self.picture.emit(_picture(accumulation, request, seconds, count))
+                    self._drawn.emit(_picture(accumulation, request, seconds, count))
                     began = time.perf_counter()
                     continue
                 index += 1
                 count = affordable_frames(most, index, time.perf_counter() - began)
-                self.picture.emit(_picture(accumulation, request, seconds, count))
+                self._drawn.emit(_picture(accumulation, request, seconds, count))
                 if not request.interactive and STILL_FRAMES <= index < count:
                     self._lend_to_thumbnail(renderer)
                 if request.interactive:
