@@ -168,6 +168,20 @@ def test_the_store_keeps_what_was_used_last_within_its_budget() -> None:
     assert things[3].released
 
 
+def test_of_small_things_a_number_is_kept() -> None:
+    """A drag that makes tables anew with each move must not fill the driver's memory with thousands of them."""
+    store, things = Store(budget=10**6), [Thing() for _ in range(6)]
+    store.get(("other", 0), lambda: things[5], 1)
+    for number in range(4):
+        store.get(("table", number), lambda n=number: things[n], 1, most=2)  # type: ignore[misc]
+    assert [thing.released for thing in things] == [True, True, False, False, False, False]
+    with store.frame():
+        store.get(("table", 2), Thing, 1, most=2)
+        store.get(("table", 4), lambda: things[4], 1, most=1)
+        assert not things[2].released, "the frame needs it"
+        assert things[3].released
+
+
 def test_a_frame_keeps_what_it_asked_for_whatever_the_budget() -> None:
     store, things = Store(budget=100), [Thing() for _ in range(4)]
 

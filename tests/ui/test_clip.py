@@ -298,3 +298,32 @@ def test_handles_stay_in_a_picture_that_shows_a_part(make_window: Any, qtbot: Qt
     inside = [k for k, h in handles(window).items() if 0 < h.at[0] < width and 0 < h.at[1] < height]
     assert "plane.0.move" in inside
     assert len([k for k in inside if k.startswith("crop")]) >= 3
+
+
+def test_cut_faces_are_made_solid_by_a_click(
+    make_window: Any, qtbot: QtBot, hand_of: Any, ball_scene: Scene
+) -> None:
+    through_the_ball = ClipPlane((0.0, 13.0, 0.0), (0.0, 1.0, 0.0))
+    window = clipping(
+        make_window, qtbot, ball_scene.with_(clip=(through_the_ball,), technique="raycast-phong")
+    )
+    user = hand_of(window)
+
+    def final_pixels() -> np.ndarray:
+        user.wait_for_picture()
+        qtbot.waitUntil(
+            lambda: window.viewport.picture is not None and window.viewport.picture.settled, timeout=60_000
+        )
+        return np.asarray(user.pixels())
+
+    open_face = final_pixels()
+    box = window.view_page.solid
+    assert not box.isChecked()
+    qtbot.mouseClick(box, LEFT, pos=QPoint(8, box.height() // 2))
+    assert window.editor.scene.solid_cuts
+    assert window.editor.document.undo_label == "Change the cut faces"
+    assert np.abs(final_pixels() - open_face).max() > 20
+    user.press(Qt.Key.Key_Z, CTRL)
+    assert not window.editor.scene.solid_cuts
+    assert not box.isChecked()
+    assert np.array_equal(final_pixels(), open_face)

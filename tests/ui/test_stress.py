@@ -120,8 +120,8 @@ class Anybody:
         palette = next((d for d in _dialogs() if type(d).__name__ == "CommandPalette"), None)
         if palette is not None:
             self.dialogs.add("CommandPalette")
-            QTest.keyClicks(palette.focusWidget() or palette, commands()[name].title)
-            QTest.keyClick(palette.focusWidget() or palette, Qt.Key.Key_Return)
+            QTest.keyClicks(palette.search, commands()[name].title)
+            QTest.keyClick(palette.search, Qt.Key.Key_Return)
             self.qtbot.wait(10)
 
     def button(self) -> None:

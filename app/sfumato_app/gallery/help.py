@@ -45,6 +45,7 @@ WITH: dict[str, dict[str, Any]] = {
     "bleeding": {"technique.shell_strength": 1.5}, "share": {"technique.mode": "mix", "technique.lamps": "diffuse"},
     "mode": {"technique.lamps": "diffuse"}, "Scene.shadow_floor": {"lights.0.tilt": 65.0},
     "Scene.tone_curve": {"exposure": 1.2},
+    "Scene.solid_cuts": {"crop.low": (0.0, 0.45, 0.0), "technique": "raycast-phong"},
 }  # fmt: skip
 #: Effort and accuracy, which a small picture cannot show.
 SILENT = {"resolution", "step", "frames", "samples", "directions", "light_step", "coarsest", "reduction", "ends",

@@ -111,7 +111,9 @@ class Store:
             if guest in guests:
                 guests.remove(guest)
 
-    def get(self, key: Hashable, make: Callable[[], T], size: Callable[[T], int] | int = 0) -> T:
+    def get(
+        self, key: Hashable, make: Callable[[], T], size: Callable[[T], int] | int = 0, most: int | None = None
+    ) -> T:
         """Return what is kept under a key, or make and keep it.
 
         Parameters
@@ -122,6 +124,9 @@ class Store:
             Makes the thing.
         size : callable or int
             Its bytes on the GPU.
+        most : int, optional
+            So many whose keys start with the same word are kept, the newest: of small things that a drag makes anew
+            with each move, a driver holds more than their bytes.
         """
         self.pin(key)
         if key in self._items:
@@ -131,7 +136,16 @@ class Store:
         thing = make()
         self._items[key] = (thing, size(thing) if callable(size) else size)
         self.make_room(key)
+        if most is not None:
+            self._keep_newest(key, most)
         return thing
+
+    def _keep_newest(self, key: Hashable, most: int) -> None:
+        """Free the oldest things whose keys start as one does, but for so many, and nothing that a frame needs."""
+        alike = [other for other in self._items if _word(other) == _word(key)]
+        for other in alike[:-most]:
+            if other not in self._pinned:
+                _release(self._items.pop(other)[0])
 
     def holds(self, key: Hashable) -> bool:
         """Tell whether something is kept under a key."""
@@ -169,19 +183,22 @@ class Store:
 
     def listing(self) -> list[tuple[str, int]]:
         """Return what is kept, guests included, and its bytes, the largest first."""
-        rows = [
-            (str(key[0] if isinstance(key, tuple) else key), size) for key, (_, size) in self._items.items()
-        ]
+        rows = [(_word(key), size) for key, (_, size) in self._items.items()]
         rows += [(name, guest.bytes_in_use) for name, guests in self._guests.items() for guest in guests]
         return sorted(rows, key=lambda row: -row[1])
 
     def things(self) -> list[tuple[str, Any]]:
         """Return what is kept here, each with the word that its key begins with."""
-        return [(str(key[0] if isinstance(key, tuple) else key), t) for key, (t, _) in self._items.items()]
+        return [(_word(key), thing) for key, (thing, _) in self._items.items()]
 
     def clear(self) -> None:
         """Free everything; guests free what is theirs."""
         self.drop(lambda _: True)
+
+
+def _word(key: Hashable) -> str:
+    """Return the word that a key starts with: what is kept under it."""
+    return str(key[0] if isinstance(key, tuple) else key)
 
 
 def _release(thing: Any) -> None:

@@ -217,9 +217,12 @@ def _integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
         zb = np.minimum(task.stack.plane(i + 1), task.z_out[pixels])
         hit = np.flatnonzero((zb > za) & (1 - result[:, 3] > OPAQUE))
         a, b = (start[hit] + slope[hit] * z[hit, None] for z in (za, zb))
-        tau, color, emission = task.medium.between(task.medium.value(a), task.medium.value(b))
+        s_a, s_b = task.medium.value(a), task.medium.value(b)
+        face = (za[hit] == task.z_in[pixels][hit]) & task.region.on_solid_face(a, slope[hit], inwards=True)
+        tau, color, emission = task.medium.between(s_a, np.where(face, s_a, s_b))
+        x = np.where(face, task.region.solid_depth(tau), tau * (zb - za)[hit])
         solid = tau > 0
-        hit, a, b, x = hit[solid], a[solid], b[solid], (tau * (zb - za)[hit])[solid]
+        hit, a, b, x = hit[solid], a[solid], b[solid], x[solid]
         alpha = -np.expm1(-x * secant[hit])
         light = np.zeros((len(hit), 3))
         for cone in task.cones:
@@ -251,4 +254,17 @@ def optical_depth(task: Task, p_world: np.ndarray, towards: np.ndarray) -> np.nd
         far = task.medium.value(p_world + towards * end[:, None])
         depth += task.medium.extinction_between(near, far) * np.maximum(end - k * step, 0)
         near = far
+    return depth + _solid_faces(task, p_world, towards, length) if task.region.solid.any() else depth
+
+
+def _solid_faces(task: Task, p_world: np.ndarray, towards: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """Return the optical depth of the solid faces that ways (n,) begin under or end at."""
+    depth = np.zeros(len(p_world))
+    ends = p_world + towards * length[:, None]
+    inside = length > 1e-7 * task.region.diagonal  # a way that leaves at once begins on the face, not under it
+    begins = inside & task.region.on_solid_face(p_world, towards, inwards=True)
+    leaves = inside & task.region.on_solid_face(ends, towards, inwards=False)
+    for there, points in ((begins, p_world), (leaves, ends)):
+        value = task.medium.value(points[there])
+        depth[there] += task.region.solid_depth(task.medium.extinction_between(value, value))
     return depth

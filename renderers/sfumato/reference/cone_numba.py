@@ -12,6 +12,7 @@ from scipy import ndimage
 
 from .cone import DARK, OPAQUE
 from .medium import CELLS, SAME, Medium
+from .rays import SOLID_DEPTH
 
 if TYPE_CHECKING:
     from .cone import Task
@@ -48,6 +49,8 @@ def integrate(task: Task, pixels: np.ndarray) -> np.ndarray:
             medium.integral,
             empty_distance(medium),
             task.region.half_spaces,
+            task.region.solid,
+            task.region.diagonal,
         )
     )
 
@@ -122,6 +125,42 @@ def _to_edge(half_spaces, x, y, z, wx, wy, wz):  # type: ignore[no-untyped-def]
 
 
 @_jit
+def _on_solid_face(half_spaces, solid, diagonal, x, y, z, wx, wy, wz, inwards):  # type: ignore[no-untyped-def]
+    """Whether a point lies on a solid face that a direction enters (or leaves) through."""
+    for r in range(half_spaces.shape[0]):
+        if not solid[r]:
+            continue
+        a, b, c, offset = half_spaces[r]
+        near = abs(a * x + b * y + c * z - offset) < 1e-7 * diagonal * math.sqrt(a * a + b * b + c * c)
+        rate = a * wx + b * wy + c * wz
+        if near and (rate > 0 if inwards else rate < 0):
+            return True
+    return False
+
+
+@_jit
+def _solid_depth(voxels, matrix, density, integral, diagonal, x, y, z):  # type: ignore[no-untyped-def]
+    s = _value(voxels, matrix, x, y, z)
+    return min(_mean(density, integral, s, s, 0) * diagonal, SOLID_DEPTH)
+
+
+@_jit
+def _solid_faces(  # type: ignore[no-untyped-def]
+    voxels, matrix, density, integral, half_spaces, solid, diagonal, x, y, z, wx, wy, wz
+):
+    """Optical depth of the solid faces that a way begins under or ends at."""
+    depth, length = 0.0, _to_edge(half_spaces, x, y, z, wx, wy, wz)
+    if length <= 1e-7 * diagonal:  # it leaves at once: it begins on the face, not under it
+        return depth
+    if _on_solid_face(half_spaces, solid, diagonal, x, y, z, wx, wy, wz, True):
+        depth += _solid_depth(voxels, matrix, density, integral, diagonal, x, y, z)
+    x, y, z = x + wx * length, y + wy * length, z + wz * length
+    if _on_solid_face(half_spaces, solid, diagonal, x, y, z, wx, wy, wz, False):
+        depth += _solid_depth(voxels, matrix, density, integral, diagonal, x, y, z)
+    return depth
+
+
+@_jit
 def _optical_depth(voxels, matrix, density, integral, empty, half_spaces, step, x, y, z, wx, wy, wz):  # type: ignore[no-untyped-def]
     length = _to_edge(half_spaces, x, y, z, wx, wy, wz)
     # Voxels that a step crosses at most along one axis: how many steps an empty distance is worth.
@@ -181,7 +220,10 @@ def _pixels(  # type: ignore[no-untyped-def]
     integral,
     empty,
     half_spaces,
+    solid,
+    diagonal,
 ):
+    any_solid = solid.any()
     result = np.zeros((start.shape[0], 4))
     mean, light, pa, pb = np.zeros(7), np.zeros(3), np.zeros(3), np.zeros(3)
     for p in range(start.shape[0]):
@@ -195,12 +237,30 @@ def _pixels(  # type: ignore[no-untyped-def]
             pb[:] = start[p] + slope[p] * zb
             s0 = _value(voxels, matrix, pa[0], pa[1], pa[2])
             s1 = _value(voxels, matrix, pb[0], pb[1], pb[2])
+            face = (
+                any_solid
+                and za == z_in[p]
+                and _on_solid_face(
+                    half_spaces,
+                    solid,
+                    diagonal,
+                    pa[0],
+                    pa[1],
+                    pa[2],
+                    slope[p, 0],
+                    slope[p, 1],
+                    slope[p, 2],
+                    True,
+                )
+            )
+            if face:
+                s1 = s0
             mean[0] = _mean(density, integral, s0, s1, 0)
             if mean[0] <= 0:
                 continue
             for c in range(1, 7):
                 mean[c] = _mean(density, integral, s0, s1, c) / mean[0]
-            x = mean[0] * (zb - za)
+            x = min(mean[0] * diagonal, SOLID_DEPTH) if face else mean[0] * (zb - za)
             alpha = -math.expm1(-x * v)
             light[:] = 0.0
             for lamp in range(directions.shape[0]):
@@ -226,6 +286,22 @@ def _pixels(  # type: ignore[no-untyped-def]
                         w[1],
                         w[2],
                     )
+                    if any_solid and depth < DARK:
+                        depth += _solid_faces(
+                            voxels,
+                            matrix,
+                            density,
+                            integral,
+                            half_spaces,
+                            solid,
+                            diagonal,
+                            at[0],
+                            at[1],
+                            at[2],
+                            w[0],
+                            w[1],
+                            w[2],
+                        )
                     if depth < DARK:
                         total += math.exp(-depth) * _slab_term(x, v, secants[lamp, k], rear[lamp])
                 light += radiance[lamp] * (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..errors import SceneError
 from ..scene import Scene
 from .medium import CELLS, Medium
 from .rays import Region
@@ -50,6 +51,8 @@ def intensity(
     ndarray, shape (n, 3)
         Linear RGB; 1 + bias where nothing is near and nothing shines.
     """
+    if scene.has_solid_cuts:
+        raise SceneError("solid_cuts", True, "this twin has open cut faces; `reference.cone` has solid ones")
     medium, region = Medium(scene), Region(scene)
     total = np.zeros((len(points), 3))
     weights = np.ones(len(directions)) if weights is None else weights

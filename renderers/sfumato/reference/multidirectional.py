@@ -261,6 +261,8 @@ def render(scene: Scene, size: tuple[int, int], frame_index: int = 0) -> np.ndar
     lit = scene.technique_id in LIT
     if not lit and scene.technique_id not in UNLIT:
         raise SceneError("technique", scene.technique_id, "one of " + ", ".join(LIT + UNLIT))
+    if scene.has_solid_cuts:
+        raise SceneError("solid_cuts", True, "this twin has open cut faces; `reference.cone` has solid ones")
     if getattr(scene.technique, "specular", 0.0) > 0:
         raise SceneError("technique.specular", scene.technique.specular, "the reference has no highlights")
     medium, region, stack = Medium(scene), Region(scene), Stack.of(scene, jitter(frame_index))

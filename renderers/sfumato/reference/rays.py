@@ -81,24 +81,52 @@ def view_rays(camera: Camera, size: tuple[int, int], pixel_jitter: tuple[float, 
     return Rays(np.broadcast_to(frame.eye, lateral.shape), frame.forward + lateral)
 
 
+#: Optical depth to which matter on a solid cut face is held: nothing more can be seen.
+SOLID_DEPTH = 12.0
+
+
 class Region:
-    """What is left of the volume: the crop box and the enabled clip planes, as half spaces n . p >= c."""
+    """What is left of the volume: the crop box and the enabled clip planes, as half spaces n . p >= c.
+
+    Where cut faces are solid (`Scene.solid_cuts`), matter on them stops light as if it went on for the volume's
+    diagonal, up to `SOLID_DEPTH`.
+    """
 
     def __init__(self, scene: Scene) -> None:
         if scene.volume is None:
             raise SceneError("volume", None, "a volume is needed")
         matrix = scene.volume.texture_from_world
-        rows = []
+        rows, cuts = [], []
         for axis in range(3):
             n, c = matrix[axis, :3], matrix[axis, 3]
             rows.append((*n, scene.crop.low[axis] - c))
             rows.append((*-n, c - scene.crop.high[axis]))
+            cuts += [scene.crop.low[axis] > 0, scene.crop.high[axis] < 1]
         for plane in scene.clip:
             if plane.enabled:
                 n = np.asarray(plane.normal, dtype=np.float64) / np.linalg.norm(plane.normal)
                 rows.append((*n, float(n @ np.asarray(plane.point))))
+                cuts.append(True)
         #: Shape (n, 4): normal and offset.
         self.half_spaces = np.array(rows)
+        #: Which of them have solid faces, shape (n,).
+        self.solid = np.array(cuts) & scene.solid_cuts
+        #: How far matter on a solid face goes on, mm.
+        self.diagonal = scene.volume.diagonal
+
+    def on_solid_face(self, points: np.ndarray, along: np.ndarray, inwards: bool) -> np.ndarray:
+        """Tell of points (n, 3) whether they lie on a solid face that a direction enters (or leaves) through."""
+        found = np.zeros(len(points), dtype=bool)
+        for *normal, offset in self.half_spaces[self.solid]:
+            n = np.array(normal)
+            rate = np.broadcast_to(along @ n, found.shape)
+            near = np.abs(points @ n - offset) < 1e-7 * self.diagonal * np.linalg.norm(n)
+            found |= near & ((rate > 0) if inwards else (rate < 0))
+        return found
+
+    def solid_depth(self, extinction: np.ndarray) -> np.ndarray:
+        """Return the optical depth of matter on a solid face, given its extinction per mm."""
+        return np.minimum(extinction * self.diagonal, SOLID_DEPTH)
 
     def interval(self, start: np.ndarray, along: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return (t_in, t_out) between which ``start + along t`` is inside; empty if t_in >= t_out."""

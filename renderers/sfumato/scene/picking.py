@@ -119,6 +119,11 @@ def ray_samples(scene: Scene, x: float, y: float, aspect: float) -> tuple[np.nda
     step = (far - near) / count
     points = start + along * (near + step * (np.arange(count) + 0.5))[:, None]
     taken = _extinction_at(scene, volume, points) * step
+    if scene.has_solid_cuts:
+        face = start + along * near
+        if _is_cut_face(scene, volume, face, along):
+            taken[0] = max(taken[0], float(_extinction_at(scene, volume, face[None])[0]) * volume.diagonal)
+            points[0] = face
     return points, np.cumsum(taken) - taken, taken
 
 
@@ -172,6 +177,17 @@ def _shown_interval(
         else:
             far = min(far, -room / rate)
     return near, far
+
+
+def _is_cut_face(scene: Scene, volume: Volume, point: np.ndarray, along: np.ndarray) -> bool:
+    """Tell whether a ray comes in at a point through a clip plane, or a side of the crop box that was moved in."""
+    sides = [*(v > 0 for v in scene.crop.low), *(v < 1 for v in scene.crop.high)]
+    cut = sides + [True] * sum(plane.enabled for plane in scene.clip)
+    near = 1e-7 * volume.diagonal
+    return any(
+        is_cut and float(n @ along) > 0 and abs(float(n @ point) - least) < near * float(np.linalg.norm(n))
+        for (n, least), is_cut in zip(_half_spaces(scene, volume), cut, strict=True)
+    )
 
 
 def _half_spaces(scene: Scene, volume: Volume) -> list[tuple[np.ndarray, float]]:

@@ -74,6 +74,9 @@ class Scene:
         Jittered frames that `render` accumulates.
     clip, crop
         Clip planes (up to six) and crop box.
+    solid_cuts : bool
+        Whether cut faces are solid: matter on them looks as if it went on behind the face through the whole
+        subject, and is shaded as the plane is turned.
     geometry : sequence of Geometry
         Tracts, streamlines and surfaces (`sfumato.load_geometry`).
     bookmarks : sequence of Bookmark
@@ -154,6 +157,15 @@ class Scene:
     ] = 0.0
     clip: tuple[ClipPlane, ...] = ()
     crop: CropBox = field(default_factory=CropBox)
+    solid_cuts: Annotated[
+        bool,
+        Param(
+            "Matter on a cut face looks as if it went on behind it: what is translucent shows its section, "
+            "shaded as a plane",
+            label="Solid cut faces",
+            tab="view",
+        ),
+    ] = False
     geometry: tuple[Geometry, ...] = ()
     bookmarks: tuple[Bookmark, ...] = ()
 
@@ -202,6 +214,12 @@ class Scene:
         from ..techniques import technique_for
 
         return shining(self.lights)[: technique_for(self.technique).max_lights]
+
+    @property
+    def has_solid_cuts(self) -> bool:
+        """Whether a clip plane or the crop box cuts the volume, and the faces are solid."""
+        cropped = max(self.crop.low) > 0 or min(self.crop.high) < 1
+        return self.solid_cuts and (cropped or any(plane.enabled for plane in self.clip))
 
     def light_angles(self) -> tuple[tuple[float, float], ...]:
         """Tilt and rotation in degrees of each active light, as the camera sees it."""

@@ -159,6 +159,11 @@ class Volume:
         return np.asarray(box @ matrix[:3, :3].T + matrix[:3, 3])
 
     @property
+    def diagonal(self) -> float:
+        """Length in mm from the volume's first corner to its last."""
+        return float(np.linalg.norm(np.subtract(*self.corners()[[0, -1]])))
+
+    @property
     def center(self) -> Vec3:
         """World position of the middle of the volume in mm."""
         middle = self.corners().mean(axis=0)

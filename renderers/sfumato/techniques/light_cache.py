@@ -12,6 +12,8 @@ from ..gpu import Store
 #: Bytes of textures that are kept; the lamps of the present frame are kept in any case.
 BUDGET = 512 << 20
 BYTES_PER_TEXEL = 4
+#: So many textures are kept at most: of small ones a driver holds more than their bytes.
+MOST = 24
 #: Part of a device's whole budget that light volumes may take.
 SHARE = 0.25
 
@@ -96,7 +98,9 @@ class LightCache:
     def make_room(self, size: tuple[int, int, int], in_use: int = 0) -> Any:
         """Give up old textures until one of a size fits; returns one that has that size already, or None."""
         wanted = math.prod(size) * self._bytes
-        while len(self._kept) > in_use and self.bytes_in_use + wanted > self.budget:
+        while len(self._kept) > in_use and (
+            self.bytes_in_use + wanted > self.budget or len(self._kept) >= MOST
+        ):
             _, old = self._kept.popitem(last=False)
             if old.size == size:
                 return old

@@ -11,6 +11,7 @@
 #include "volume"
 #include "clip"
 #include "transfer"
+#include "solid"
 #endif
 #if !HOLLOW && GEOMETRY
 #include "cover"
@@ -73,6 +74,7 @@ void main() {
 #else
     vec2 tau = vec2(classify_extinction(s0, s1), classify_extinction(s1, s2));
 #endif
+    tau = vec2(SOLIDIFIED(tau.x, mix(enter, leave, 0.25)), SOLIDIFIED(tau.y, mix(enter, leave, 0.75)));
     // Optical depths of the slab's halves along the axis.
     vec2 halves = tau * u_thickness * max(vec2(min(range.y, 0.5) - range.x, range.y - max(range.x, 0.5)), 0.0);
     float absorbed = halves.x + halves.y;

@@ -11,10 +11,12 @@
 // EMISSION   tissue gives off light
 // SURFACE    rays end at opaque surfaces that were drawn before
 // GEOMETRY   geometry casts shadows on the volume
+// SOLID      cut faces are solid: matter looks as if it went on behind them
 #include "ray"
 #include "volume"
 #include "clip"
 #include "transfer"
+#include "solid"
 #include "skip"
 #include "slope"
 uniform vec3 u_light_color[4];       // linear RGB times intensity
@@ -117,7 +119,7 @@ vec4 returned_light(float depth, float secant, float alpha) {
 vec3 lit(int i, Meeting front, Meeting back, bool faint, vec3 color, float alpha, vec4 returned, vec3 t, vec3 view) {
     vec3 result = vec3(0.0);
 #if SPECULAR
-    vec3 gradient = volume_gradient(t);
+    vec3 gradient = shading_gradient(t);
     float strength = length(gradient);
     if (dot(gradient, view) < 0.0) gradient = -gradient;
 #endif
@@ -163,10 +165,17 @@ void main() {
 #else
     float dz = u_step / secant, z0 = range.x + u_z0 * dz;
 #endif
-    int i = max(u_first, int(floor((range.x - z0) / dz)));
+    int first = int(floor((range.x - z0) / dz)), i = max(u_first, first);
     float z = max(range.x, z0 + float(i) * dz);
     Reading here = reading_at(a + b * z);
     vec3 view = -ray.direction / secant;
+
+#ifdef SOLID
+    // Only the pass that meets the face shows it.
+    bool entering = i == first;
+    vec3 face = entering ? cut_face(a, b, range.x) : vec3(0.0);
+    entering = dot(face, face) > 0.0;
+#endif
 
     // Loops where branches would do: software renderers run both sides of a branch, but leave a loop when all have.
     bool known = true;           // whether `here` is what lies at z
@@ -177,6 +186,9 @@ void main() {
             i = skipped;
             z = z0 + float(i) * dz;
             known = false;
+#ifdef SOLID
+            entering = false;
+#endif
             skipped = plane_before(z + empty_run(a, b, z), z0, dz, range.y);
         }
         if (!known) here = reading_at(a + b * z);
@@ -201,16 +213,25 @@ void main() {
 #endif
                 float z_next = min(z0 + float(j + taken) * dz, range.y);
                 Reading there = reading_at(a + b * z_next);
-#ifdef TRANSFER_2D
-                magnitude = steepness(next.value, there.value, a + b * (0.5 * (z_end + z_next)));
+                float way = max(z_next - z_end, 0.0), value = there.value;
+#ifdef SOLID
+                if (entering) { way = u_solid; value = next.value; }
 #endif
-                float way = max(z_next - z_end, 0.0);
-                vec4 part = way * classify(next.value, there.value, magnitude);
+#ifdef TRANSFER_2D
+                magnitude = steepness(next.value, value, a + b * (0.5 * (z_end + z_next)));
+#endif
+                vec4 part = classify(next.value, value, magnitude);
+#ifdef SOLID
+                way = min(way, max(SOLID_DEPTH / max(part.a, 1e-20), z_next - z_end));
+                g_face = entering && way * part.a > THIN ? face : j > i ? g_face : vec3(0.0);
+                entering = false;
+#endif
+                part *= way;
                 if (LOOK_ON && through.a > 0.0 && left * (through.a + part.a) > THIN) break;
                 through += part;
                 lean += part.a * float(j - i);
 #if EMISSION
-                glow += way * classify_emission(next.value, there.value, magnitude);
+                glow += way * classify_emission(next.value, value, magnitude);
 #endif
                 z_end = z_next;
                 next = there;
@@ -250,7 +271,7 @@ void main() {
 #elif SHADING == 5
             vec3 c = local_lit(color, alpha, a + b * (0.5 * (z + z_end)), view);
 #elif SHADING == 2
-            vec3 c = alpha * phong(volume_gradient(a + b * (0.5 * (z + z_end))), view, color, 1.0);
+            vec3 c = alpha * phong(shading_gradient(a + b * (0.5 * (z + z_end))), view, color, 1.0);
 #elif SHADING == 6
             vec3 c = alpha * color * (0.5 * u_light_scale * (here.light + next.light));
 #else

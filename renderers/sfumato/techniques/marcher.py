@@ -31,6 +31,10 @@ PIECE_PIXELS = 512 * 64
 EDGE = 0.05
 #: Thin segments are shaded together: so many at most, and no farther than so many voxels at full quality.
 TOGETHER, TOGETHER_VOXELS = 4, 2.0
+#: Transfer functions whose tables are kept: more than the presets that the window shows side by side.
+FUNCTIONS_KEPT = 48
+#: Depth of the layer below a solid cut face that stops light, in voxels of what light is worked out on.
+SOLID_VOXELS = 1.5
 _FAR = 1e30
 
 
@@ -45,6 +49,8 @@ class Material:
     tables: TransferTables
     empty: EmptySpace
     clipped: bool
+    #: Whether there are cut faces, and they are solid.
+    solid: bool
     #: Equal for materials that stop light alike, whatever their colours.
     opacity_key: Hashable
     packed: Packed | None = None
@@ -71,30 +77,32 @@ def prepare_material(frame: Frame, *, whole: bool = True) -> Material:
     )
     key = (volume.key, transfer)
     tables = store.get(
-        ("transfer function", *key), lambda: make_tables(device, volume, texture, transfer), lambda t: t.size
-    )
+        ("transfer function", *key), lambda: make_tables(device, volume, texture, transfer), lambda t: t.size,
+        FUNCTIONS_KEPT,
+    )  # fmt: skip
     empty = store.get(
         ("empty space", *key),
         lambda: map_empty_space(device, volume, occupied_blocks(texture, tables.visible)),
         lambda e: e.size,
+        FUNCTIONS_KEPT,
     )
-    return Material(
-        texture, tables, empty, any(plane.enabled for plane in frame.scene.clip), _opacity_key(frame)
-    )
+    clipped = any(plane.enabled for plane in frame.scene.clip)
+    return Material(texture, tables, empty, clipped, frame.scene.has_solid_cuts, _opacity_key(frame))
 
 
 def _opacity_key(frame: Frame) -> Hashable:
-    transfer = frame.transfer
+    transfer, solid = frame.transfer, frame.scene.has_solid_cuts
     if transfer.regions:
-        return frame.volume.key, transfer
-    return frame.volume.key, transfer.unit_distance, tuple((p.value, p.opacity) for p in transfer.points)
+        return frame.volume.key, solid, transfer
+    return frame.volume.key, solid, transfer.unit_distance, tuple((p.value, p.opacity) for p in transfer.points)
 
 
 def material_defines(material: Material) -> tuple[tuple[str, int], ...]:
     """Return the defines of a material's shader variant."""
     two = (("TRANSFER_2D", 1),) if material.tables.max_gradient > 0 else ()
     packed = (("PACKED", 1),) if material.packed is not None else ()
-    return (("CLIPS", int(material.clipped)), *two, *packed)
+    solid = (("SOLID", 1),) if material.solid else ()
+    return (("CLIPS", int(material.clipped)), *two, *packed, *solid)
 
 
 def bind_material(program: Program, material: Material, frame: Frame) -> None:
@@ -116,6 +124,8 @@ def bind_material(program: Program, material: Material, frame: Frame) -> None:
         u_blocks=tuple((dims / 8).tolist()),
         u_table_size=float(tables.color.size[0]),
         u_gradient_scale=1 / tables.max_gradient if tables.max_gradient > 0 else 1.0,
+        u_solid=volume.diagonal,
+        u_solid_layer=SOLID_VOXELS * volume.min_spacing * max(1.0, frame.quality.light, frame.quality.step),
         **clip_uniforms(frame.scene, volume),
     )
 

@@ -13,6 +13,7 @@
 #include "volume"
 #include "clip"
 #include "transfer"
+#include "solid"
 #endif
 #if !HOLLOW && GEOMETRY
 #include "cover"
@@ -52,7 +53,8 @@ void main() {
     float value = volume_value(leave);
     // Tiles are swept from one slab before anything in them can be seen: where nobody has looked there is nothing to see.
     float s0 = center.g >= 0.0 ? center.g : value;
-    float tau = extinction_around(s0, value, 0.5 * (enter + leave));
+    vec3 middle = 0.5 * (enter + leave);
+    float tau = SOLIDIFIED(extinction_around(s0, value, middle), middle);
     float absorbed = float(VOLUME) * tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
 #endif
 #if !HOLLOW && GEOMETRY

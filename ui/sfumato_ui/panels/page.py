@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QApplication, QFrame, QLabel, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from qtpy.QtWidgets import (
+    QApplication,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QScrollArea,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
 
 
 class Page(QScrollArea):
@@ -44,13 +53,16 @@ class Page(QScrollArea):
         widget.setSizePolicy(policy)
         self.column.addWidget(widget)
 
-    def add_heading(self, text: str) -> None:
-        """Put a heading at the column's end."""
+    def add_heading(self, text: str, beside: QWidget | None = None) -> None:
+        """Put a heading at the column's end, with a control at its right."""
         label = QLabel(text)
         label.setProperty("heading", True)
-        if self.column.count():
-            label.setContentsMargins(0, 8, 0, 0)
-        self.column.addWidget(label)
+        row = QHBoxLayout()
+        row.setContentsMargins(0, 8 if self.column.count() else 0, 0, 0)
+        row.addWidget(label, 1)
+        if beside is not None:
+            row.addWidget(beside)
+        self.column.addLayout(row)
 
     def finish(self) -> None:
         """Let what is left of the height stay below the controls."""

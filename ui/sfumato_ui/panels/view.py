@@ -25,8 +25,9 @@ from ..bookmarks import BookmarkButton
 from ..clip_controls import ClipControls, CropControls
 from ..clip_planes import ClipPlanes
 from ..editing import Editor
-from ..generated import ChoiceBox, ParamControl, bind_slider, labelled, slider_for
+from ..generated import ChoiceBox, ParamControl, bind_slider, labelled, slider_for, tooltip_of
 from ..geometry_controls import GeometryControls
+from ..help_pictures import illustrated
 from ..jobs import STILL_SECONDS
 from ..orientation import cube_wanted
 from ..quality import QUALITIES, chosen_quality, remember_quality
@@ -47,7 +48,7 @@ BACKGROUNDS = {
 
 #: Fields of the scene that the page shows, but for the camera.
 SHOWN = (
-    "volume", "geometry", "clip", "crop", "exposure", "white_balance", "tone_curve", "step", "background"
+    "volume", "geometry", "clip", "crop", "solid_cuts", "exposure", "white_balance", "tone_curve", "step", "background"
 )  # fmt: skip
 
 
@@ -83,6 +84,10 @@ class ViewPage(Page):
         self.lens = slider_for(fields_of(Camera)["view_angle"], "Camera.view_angle")
         self.clip = ClipControls(editor, clips)
         self.crop = CropControls(editor, clips)
+        self.solid = QCheckBox("Solid cut faces")
+        declared = fields_of(Scene)["solid_cuts"].param
+        assert declared is not None
+        self.solid.setToolTip(illustrated(tooltip_of(declared), "Scene.solid_cuts"))
         self.shapes = GeometryControls(editor)
         self.exposure = slider_for(fields_of(Scene)["exposure"], "Scene.exposure")
         self.step = slider_for(fields_of(Scene)["step"])
@@ -116,7 +121,7 @@ class ViewPage(Page):
         self.add(self.views)
         self.add(self._projection_row())
         self.add(self.lens)
-        self.add_heading("Clip planes")
+        self.add_heading("Clip planes", self.solid)
         self.add(self.clip)
         self.add_heading("Crop box")
         self.add(self.crop)
@@ -206,6 +211,7 @@ class ViewPage(Page):
         self.lens.edited.connect(self._set_lens)
         self.lens.drag_started.connect(lambda: editor.begin("Change the lens"))
         self.lens.drag_finished.connect(editor.end)
+        self.solid.toggled.connect(lambda on: editor.change("Change the cut faces", solid_cuts=on))
         bind_slider(self.exposure, editor, "exposure", "exposure")
         bind_slider(self.step, editor, "step", "sampling")
         self.scale_bar.toggled.connect(self.scale_bar_chosen)
@@ -250,6 +256,10 @@ class ViewPage(Page):
         self.clip.refresh()
         self.crop.refresh()
         self.shapes.refresh()
+        self.solid.blockSignals(True)
+        self.solid.setChecked(scene.solid_cuts)
+        self.solid.blockSignals(False)
+        self.solid.setEnabled(scene.volume is not None)
         self.exposure.set_number(scene.exposure)
         self.auto.setEnabled(scene.volume is not None)
         self.white.show_value()

@@ -17,7 +17,8 @@ float near_field(int l, vec3 t, float value, bool faint) {
     float depth = 0.0, begin = 0.0;
     for (int k = faint ? NEAR - 1 : 0; k < NEAR; ++k) {
         float end = u_near_end[l * NEAR + k], next = volume_value(t + along * end);
-        depth += extinction_around(value, next, t + along * (0.5 * (begin + end))) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
+        vec3 middle = t + along * (0.5 * (begin + end));
+        depth += SOLIDIFIED(extinction_around(value, next, middle), middle) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
         value = next;
         begin = end;
     }

@@ -25,7 +25,8 @@ float near_field(int l, vec3 t, float value, bool faint) {
     int stride = faint ? NEAR : 1;
     for (int k = 0; k < NEAR; k += stride) {
         float begin = float(k), end = float(k + stride), next = volume_value(t + along * end);
-        depth += extinction_around(value, next, t + along * (0.5 * (begin + end))) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
+        vec3 middle = t + along * (0.5 * (begin + end));
+        depth += SOLIDIFIED(extinction_around(value, next, middle), middle) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
         value = next;
     }
     return exp(-depth * u_step * u_path[l]);

@@ -1,4 +1,4 @@
-// Texels of the packed texture: which block each belongs to, and where in the volume it lies. Needs volume, clip, transfer.
+// Texels of the packed texture: which block each belongs to, and where in the volume it lies. Needs volume, clip, transfer, solid.
 
 uniform usampler3D u_bricks;     // reverse index: per brick of 16^3 texels its level, and where its blocks begin in the list
 uniform usampler2D u_list;       // place (xyz) of each block in the volume; w = 0: no block
@@ -38,5 +38,5 @@ float seen_value(vec3 t, out float there) {
 // Extinction per mm at a place.
 float matter_at(vec3 t) {
     float there, value = seen_value(t, there);
-    return there == 0.0 ? 0.0 : extinction_around(value, value, t);
+    return there == 0.0 ? 0.0 : SOLIDIFIED(extinction_around(value, value, t), t);
 }

@@ -7,6 +7,7 @@
 #include "volume"
 #include "clip"
 #include "transfer"
+#include "solid"
 #define SURFACES 1
 #if SLICED
 uniform int u_rear[4];               // 1: behind the subject, its light enters a slab at the back

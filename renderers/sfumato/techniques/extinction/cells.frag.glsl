@@ -5,6 +5,7 @@
 #include "volume"
 #include "clip"
 #include "transfer"
+#include "solid"
 #include "skip"
 
 uniform vec3 u_first;        // texture coordinates of the corner of cell 0
@@ -35,6 +36,9 @@ void main() {
         vec3 t = corner + u_cell * share;
         float value = volume_value(t), magnitude = steepness(value, value, t);
         vec4 here = classify(value, value, magnitude) * kept_point(t);
+#ifdef SOLID
+        here *= solid_extinction(here.a, t, max(u_solid_layer, u_length)) / max(here.a, 1e-20);
+#endif
         float dense = float(here.a >= u_dense);
         matter += vec3(here.a * (1.0 - dense), here.a * dense, dense / u_length);
         dimming += min(here.a, u_limit) * max(1.0 - u_bleeding * here.rgb / max(here.a, 1e-20), 0.0);

@@ -2,10 +2,12 @@
 //
 // REVERSE    1: the light comes from behind the subject, it enters a slab on the side that is away from the eye
 // EMISSION   tissue gives off light
+// SOLID      cut faces are solid: matter looks as if it went on behind them
 #include "ray"
 #include "volume"
 #include "clip"
 #include "transfer"
+#include "solid"
 
 uniform sampler2D u_light;                  // transmittance towards the light, before this slice
 uniform mat4x2 u_light_from_world;          // world mm to [0, 1]^2 over the light buffer
@@ -50,11 +52,18 @@ void main() {
     vec4 mean = classify(enter, leave, magnitude);
     if (mean.a <= 0.0) discard;
 
-    float depth = mean.a * u_spacing * secant;
+    float depth = mean.a * u_spacing * secant, solid = 1.0;
+#ifdef SOLID
+    // The first slice behind a cut face is the face.
+    float came = kept_range(a, b, vec2(-1e30, 1e30)).x;
+    bool first = z - came <= 2.0 * abs(half_slab) && cut_face(a, b, came) != vec3(0.0);
+    if (first) solid = max(min(mean.a * u_solid, SOLID_DEPTH) / depth, 1.0);
+#endif
+    depth *= solid;
     float alpha = 1.0 - exp(-depth);
     // The light has its own way through the slab: on a wall that slants, not as much solid as the eye's.
     float light_depth = classify(volume_value(here + u_light_half), volume_value(here - u_light_half), magnitude).a;
-    light_depth *= u_spacing * u_light_secant;
+    light_depth *= u_spacing * u_light_secant * solid;
     vec3 at = ray.origin + ray.direction * z;
     float visible = textureLod(u_light, u_light_from_world * vec4(at, 1.0), 0.0).r;
     float lit = mix(visible * u_facing * returned(depth, light_depth), alpha, u_unshadowed);

@@ -80,7 +80,8 @@ def blocks_key(frame: Frame) -> tuple[Hashable, ...]:
     """Return what the blocks of a frame depend on."""
     scene, params = frame.scene, frame.params
     whole = is_whole(frame)
-    return frame.volume.key, frame.transfer, scene.clip, scene.crop, params.reduction, params.coarsest, whole
+    cuts = scene.clip, scene.crop, scene.has_solid_cuts
+    return frame.volume.key, frame.transfer, *cuts, params.reduction, params.coarsest, whole
 
 
 def is_whole(frame: Frame) -> bool:

@@ -4,6 +4,7 @@
 #include "volume"
 #include "clip"
 #include "transfer"
+#include "solid"
 #include "texels"
 
 uniform sampler3D u_origins;     // where rays begin, see origins.frag.glsl
@@ -31,7 +32,7 @@ float matter(vec3 t, out vec3 shining) {
     float tau = classify_extinction(value, value);
 #endif
     shining = classify_emission(value, value, gradient) / max(tau, 1e-20) * (1.0 - exp(-tau * u_unit_distance));
-    return tau;
+    return SOLIDIFIED(tau, t);
 #else
     return matter_at(t);
 #endif

@@ -2,6 +2,7 @@
 #include "volume"
 #include "clip"
 #include "transfer"
+#include "solid"
 #include "texels"
 
 uniform float u_voxel_mm;

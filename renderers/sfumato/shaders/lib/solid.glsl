@@ -1,0 +1,60 @@
+// Solid cut faces: matter on them looks, and stops light, as if it went on behind them. Needs volume, clip, transfer.
+//
+// SOLID      defined if there are such faces
+
+#ifdef SOLID
+uniform float u_solid;           // mm that matter on a cut face goes on for
+uniform float u_solid_layer;     // mm below a face in which light is stopped
+// Optical depth to which that is held: nothing more can be seen, and exponential functions stay finite.
+const float SOLID_DEPTH = 12.0;
+
+// Whether a way to a plane is the one by which a line came in: that was worked out before, elsewhere.
+bool came_in(float way, float entry) { return way >= entry - 1e-5 * (abs(entry) + 1.0); }
+
+// The cut face through which the line a + b * s came in at s = entry: its unit normal away from what is kept, world;
+// zero where the volume itself begins there.
+vec3 cut_face(vec3 a, vec3 b, float entry) {
+    vec3 face = vec3(0.0);
+    for (int k = 0; k < 3; ++k) {
+        if (b[k] > 1e-20 && u_low[k] > 0.0 && came_in((u_low[k] - a[k]) / b[k], entry)) face[k] = -1.0;
+        if (b[k] < -1e-20 && u_high[k] < 1.0 && came_in((u_high[k] - a[k]) / b[k], entry)) face[k] = 1.0;
+    }
+#if CLIPS
+    for (int k = 0; k < u_clips; ++k) {
+        float slope = dot(u_clip[k].xyz, b);
+        if (slope > 1e-12 && came_in(-(dot(u_clip[k].xyz, a) + u_clip[k].w) / slope, entry)) face = -u_clip[k].xyz;
+    }
+#endif
+    face = face * mat3(u_texture_from_world);
+    return face / max(length(face), 1e-20);
+}
+
+// The nearest point of a cut face, as a way there in texture coordinates, and its distance in mm.
+vec4 way_to_cut(vec3 t) {
+    vec4 nearest = vec4(0.0, 0.0, 0.0, 1e9);
+    mat3 to_texture = mat3(u_texture_from_world);
+    #define NEARER(plane) { vec3 n = (plane).xyz * to_texture; float mm = (dot((plane).xyz, t) + (plane).w) / length(n); \
+        if (mm < nearest.w) nearest = vec4(to_texture * (n * (-mm / length(n))), mm); }
+    for (int k = 0; k < 3; ++k) {
+        vec3 side = vec3(k == 0, k == 1, k == 2);
+        if (u_low[k] > 0.0) NEARER(vec4(side, -u_low[k]))
+        if (u_high[k] < 1.0) NEARER(vec4(-side, u_high[k]))
+    }
+#if CLIPS
+    for (int k = 0; k < u_clips; ++k) NEARER(u_clip[k])
+#endif
+    return nearest;
+}
+
+// What stops light at a place where the matter has extinction tau (per mm), if faces reach so deep: what is on the face
+// counts, not what is below it, or thin matter over a surface that grazes the face would darken it.
+float solid_extinction(float tau, vec3 t, float layer) {
+    vec4 way = way_to_cut(t);
+    if (way.w >= layer) return tau;
+    float value = volume_value(t + way.xyz);
+    return max(tau, min(extinction_around(value, value, t + way.xyz) * u_solid, SOLID_DEPTH) / layer);
+}
+#define SOLIDIFIED(tau, t) solid_extinction(tau, t, u_solid_layer)
+#else
+#define SOLIDIFIED(tau, t) (tau)
+#endif
