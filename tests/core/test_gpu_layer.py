@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
+import weakref
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,8 +15,9 @@ import pytest
 
 import sfumato
 from sfumato import CropBox, GpuError, Light, Scene, SceneError, TransferFunction, Volume
-from sfumato.gpu import Device, Program, ShaderSource, Store, Target
+from sfumato.gpu import Device, Program, ShaderSource, Store, Target, Variants
 from sfumato.gpu import program as program_module
+from sfumato.gpu.program import VARIANTS_KEPT
 from sfumato.renderer import Quality, Renderer
 from sfumato.techniques import techniques
 from sfumato.techniques.light_cache import LightCache
@@ -114,6 +116,21 @@ def test_programs_in_turn_keep_their_own_textures(device: Device, shader: Any) -
     both.bind(u_a=textures[0].texture, u_b=textures[1].texture)
     other.bind(u_b=textures[2].texture)
     assert [drawn(device, p)[0] for p in (both, other, both, other)] == [21, 3, 21, 3]
+
+
+def test_the_newest_variants_are_kept_and_what_is_held_still_draws(device: Device, shader: Any) -> None:
+    """Hundreds of compiled programs would take gigabytes with a software renderer."""
+    shader("out vec4 o;\nvoid main() { o = vec4(NUMBER); }\n")
+    variants = Variants(device, "own.frag.glsl")
+    held = variants.get((("NUMBER", 0),))
+    alive = [weakref.ref(variants.get((("NUMBER", n),))) for n in range(1, VARIANTS_KEPT + 10)]
+    variants.get((("NUMBER", 10),))  # kept, and now the youngest
+    variants.get((("NUMBER", 100),))
+    device.collect()
+    assert sum(program() is not None for program in alive) == VARIANTS_KEPT - 1
+    assert alive[9]() is not None
+    assert drawn(device, held).tolist() == [0, 0, 0, 0]
+    assert drawn(device, variants.get((("NUMBER", 1),))).tolist() == [1, 1, 1, 1], "compiled anew"
 
 
 # -- targets ------------------------------------------------------------------------------------------

@@ -38,7 +38,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def _end(screen: subprocess.Popen[str]) -> None:
     screen.terminate()
-    screen.wait()
+    screen.communicate()  # closes its output, too
 
 
 def ball(n: int = 40) -> Volume:

@@ -14,6 +14,7 @@ from qtpy.QtCore import QPoint, QPointF, Qt
 from qtpy.QtWidgets import QApplication, QFileDialog, QMenu, QWidget
 
 from sfumato import Region, Scene, TransferFunction, Volume
+from sfumato_ui.preset_gallery import FEW
 from sfumato_ui.transfer_editor import region_painting
 from sfumato_ui.transfer_editor.canvas import HIT
 from sfumato_ui.transfer_editor.region_editor import RegionEditor
@@ -354,6 +355,34 @@ def test_presets_are_found_exported_and_imported(
     window.editor.rejected.connect(refused.append)
     answer(page.files.get, shared)
     assert "cannot be imported" in refused[0]
+
+
+def test_the_gallery_shows_the_first_presets_until_it_is_unfolded(
+    window: MainWindow, hand: Any, qtbot: QtBot
+) -> None:
+    window.panel.setCurrentWidget(window.material_page)
+    page, gallery = window.material_page, window.material_page.presets
+
+    def shown() -> int:
+        return sum(not gallery.isRowHidden(row) for row in range(gallery.count()))
+
+    assert gallery.count() > FEW
+    assert shown() == FEW
+    folded = gallery.height()
+    click(qtbot, page.bar.unfold)
+    assert shown() == gallery.count()
+    assert gallery.height() > folded
+    click(qtbot, page.bar.unfold)
+    assert (shown(), gallery.height()) == (FEW, folded)
+    last = page._presets[-1]
+    window.editor.change("Other", transfer=last.transfer)
+    assert shown() == gallery.count(), "the scene's preset is shown"
+    assert gallery.currentItem().text() == last.name
+    click(qtbot, page.bar.unfold)
+    page.more.set_open(True)
+    page.files.words.setFocus()
+    qtbot.keyClicks(page.files.words, last.name)
+    assert not gallery.isRowHidden(gallery.count() - 1), "a search finds all"
 
 
 def test_shift_moves_the_shapes_too(window: MainWindow, shapes: RegionEditor) -> None:

@@ -370,7 +370,7 @@ def test_the_histogram_of_few_whole_numbers_is_no_comb(factor: float) -> None:
 
 def test_tab_leaves_a_focused_list_without_choosing(plot: TransferPlot, qtbot: QtBot) -> None:
     page = plot.window().material_page
-    page.bar.save.setFocus()
+    page.bar.unfold.setFocus()
     before = plot.window().editor.scene
     qtbot.keyClick(QApplication.focusWidget(), Qt.Key.Key_Tab)
     assert page.presets.hasFocus()

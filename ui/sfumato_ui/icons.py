@@ -43,6 +43,8 @@ _GLYPHS = {
     "error": "ph.warning",
     "info": "ph.info",
     "reset": "ph.arrow-u-up-left",
+    "unfold": "ph.caret-down",
+    "fold": "ph.caret-up",
 }
 
 

@@ -116,15 +116,28 @@ class AskLine(QWidget):
 
 
 class PresetBar(QWidget):
-    """Heading, what the scene's function is called, and the buttons for own presets."""
+    """Heading, what the scene's function is called, and the buttons for own presets.
+
+    Attributes
+    ----------
+    unfolded : bool
+        Whether all presets are to be shown.
+    """
+
+    #: All presets are to be shown, or the first ones again.
+    fold_changed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
+        self._count = self._most = 0
+        self.unfolded = False
         self.origin = QLabel()
         self.origin.setProperty("muted", True)
         self.save = _button("Save as an own preset")
         self.rename = _button("Rename the own preset (F2)")
         self.delete = _button("Delete the own preset (Del)")
+        self.unfold = _button("Show all presets")
+        self.unfold.clicked.connect(lambda: self.set_unfolded(not self.unfolded))
         heading = QLabel("Presets")
         heading.setProperty("heading", True)
         row = QHBoxLayout(self)
@@ -132,7 +145,7 @@ class PresetBar(QWidget):
         row.setSpacing(4)
         row.addWidget(heading)
         row.addWidget(self.origin, 1)
-        for button in (self.save, self.rename, self.delete):
+        for button in (self.save, self.rename, self.delete, self.unfold):
             row.addWidget(button)
         self.refresh_theme()
 
@@ -145,10 +158,31 @@ class PresetBar(QWidget):
             button.setEnabled(own)
             button.setToolTip(f"{word} the own preset{why}")
 
+    def offer_fold(self, count: int, most: int) -> None:
+        """Offer to show all presets, if there are more than are shown at first."""
+        self._count, self._most = count, most
+        self.unfold.setVisible(count > most)
+        self._show_fold()
+
+    def set_unfolded(self, unfolded: bool) -> None:
+        """Show all presets, or the first ones."""
+        if unfolded != self.unfolded:
+            self.unfolded = unfolded
+            self._show_fold()
+            self.fold_changed.emit()
+
+    def _show_fold(self) -> None:
+        first, whole = f"Show the first {self._most} presets", f"Show all {self._count} presets"
+        name = first if self.unfolded else whole
+        self.unfold.setAccessibleName(name)
+        self.unfold.setToolTip(name)
+        self.unfold.setIcon(icon("fold" if self.unfolded else "unfold", current_theme()))
+
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""
         for button, name in ((self.save, "add"), (self.rename, "rename"), (self.delete, "remove")):
             button.setIcon(icon(name, current_theme()))
+        self._show_fold()
 
 
 def _button(name: str) -> QToolButton:

@@ -17,6 +17,8 @@ from .transfer_preview import ramp
 #: Width and height of a preset's picture in pixels.
 PICTURE = (84, 66)
 COLUMNS = 3
+#: Presets that are shown while the gallery is folded: with more rows the function would lie below the window's edge.
+FEW = 2 * COLUMNS
 _SWATCH = 7
 
 
@@ -33,11 +35,14 @@ class PresetGallery(QListWidget):
     chosen = Signal(int)
     #: F2 or Del was pressed, or a preset double-clicked.
     rename_wanted = Signal()
+    #: A preset is marked that the folded gallery does not show.
+    hidden_marked = Signal()
     delete_wanted = Signal()
 
     def __init__(self) -> None:
         super().__init__()
         self._presets: tuple[Preset, ...] = ()
+        self._words, self._folded = "", False
         self.pictures: dict[int, QImage] = {}
         self.setViewMode(QListView.ViewMode.IconMode)
         self.setMovement(QListView.Movement.Static)
@@ -65,7 +70,7 @@ class PresetGallery(QListWidget):
         self.blockSignals(False)
         for row in range(len(presets)):
             self._draw(row)
-        self._fit()
+        self._hide_rows()
 
     def show_picture(self, row: int, image: QImage) -> None:
         """Show a preset's picture."""
@@ -80,6 +85,8 @@ class PresetGallery(QListWidget):
         if row is None:
             self.clearSelection()
         self.blockSignals(False)
+        if row is not None and self._folded and row >= FEW:
+            self.hidden_marked.emit()
 
     def _tell(self) -> None:
         for index in self.selectedIndexes():
@@ -115,9 +122,20 @@ class PresetGallery(QListWidget):
 
     def seek(self, words: str) -> None:
         """Show only presets that hold all of some words."""
+        self._words = words.lower()
+        self._hide_rows()
+
+    def fold(self, folded: bool) -> None:
+        """Show the first presets alone, or all; a search finds all in any case."""
+        self._folded = folded
+        self._hide_rows()
+
+    def _hide_rows(self) -> None:
+        words = self._words.split()
         for row, preset in enumerate(self._presets):
             text = f"{preset.name} {preset.description}".lower()
-            self.setRowHidden(row, not all(word in text for word in words.lower().split()))
+            beyond = self._folded and not words and row >= FEW
+            self.setRowHidden(row, beyond or not all(word in text for word in words))
         self._fit()
 
     # -- size -------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -156,8 +157,14 @@ class Program:
         self._program.release()
 
 
+#: Programs of one shader that are kept: a software renderer takes 3 to 5 MB for each, and there are hundreds.
+VARIANTS_KEPT = 24
+
+
 class Variants:
-    """Programs of one fragment shader by their defines, each compiled when first asked for.
+    """Programs of one fragment shader by their defines, each compiled when first asked for; the newest are kept.
+
+    One that goes is freed once nobody holds it any more: a picture that is being drawn may.
 
     Parameters
     ----------
@@ -168,7 +175,7 @@ class Variants:
     def __init__(self, device: Device, fragment: str, vertex: str = "") -> None:
         self.device = device
         self._fragment, self._vertex = fragment, vertex
-        self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
+        self._programs: OrderedDict[tuple[tuple[str, int], ...], Program] = OrderedDict()
 
     def get(self, defines: tuple[tuple[str, int], ...]) -> Program:
         """Return the program of a set of defines."""
@@ -177,6 +184,9 @@ class Variants:
                 (PACKAGE / self._vertex).read_text(encoding="utf-8") if self._vertex else FULLSCREEN_VERTEX
             )
             self._programs[defines] = Program(self.device, ShaderSource(self._fragment, defines), vertex)
+        self._programs.move_to_end(defines)
+        while len(self._programs) > VARIANTS_KEPT:
+            self._programs.popitem(last=False)
         return self._programs[defines]
 
     def release(self) -> None:

@@ -16,8 +16,9 @@ from ..map_row import MapRow
 from ..own_presets import OwnPresets
 from ..preset_bar import AskLine, PresetBar
 from ..preset_files import PresetFiles
-from ..preset_gallery import PICTURE, PresetGallery
+from ..preset_gallery import FEW, PICTURE, PresetGallery
 from ..section import Section
+from ..settings import settings
 from ..sliders import LabelledSlider
 from ..thumbnails import Thumbnails
 from ..transfer_editor import TransferEditor
@@ -26,6 +27,8 @@ from .whole_function import WholeFunction
 
 #: Name of this tab's thumbnails, and the quiet time in milliseconds after which they are drawn anew.
 GROUP = "presets"
+#: Key of the settings under which it is kept whether all presets are shown.
+UNFOLDED = "section/all_presets"
 QUIET_MS = 700
 
 
@@ -63,6 +66,8 @@ class MaterialPage(Page):
         self.more.add(self.files)
         self.finish()
         self._connect()
+        self.bar.set_unfolded(bool(settings().value(UNFOLDED, False, type=bool)))
+        self._show_fold()
         self.refresh()
 
     # -- building ---------------------------------------------------------------------------------
@@ -94,6 +99,8 @@ class MaterialPage(Page):
         self.files.sought.connect(self.presets.seek)
         self.files.failed.connect(editor.rejected)
         self.files.imported.connect(self._take_imported)
+        self.bar.fold_changed.connect(self._show_fold)
+        self.presets.hidden_marked.connect(lambda: self.bar.set_unfolded(True))
         self._bind(self.density, "Change the density", WholeFunction.with_density)
         self._bind(self.level, "Shift the function", WholeFunction.with_shift)
         self._bind(self.width_of_all, "Widen the function", WholeFunction.with_width)
@@ -152,8 +159,13 @@ class MaterialPage(Page):
         built_in = presets_for(volume) if volume is not None else ()
         self._presets = (*built_in, *self.own.presets)
         self.presets.fill(self._presets)
+        self.bar.offer_fold(len(self._presets), FEW)
         self.presets.seek(self.files.words.text())
         self._quiet.start()
+
+    def _show_fold(self) -> None:
+        settings().setValue(UNFOLDED, self.bar.unfolded)
+        self.presets.fold(not self.bar.unfolded)
 
     def _on_changed(self, old: Scene, new: Scene) -> None:
         if old.volume is not new.volume or old.transfer != new.transfer:
