@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,10 +15,11 @@ from qtpy.QtCore import Qt
 from qtpy.QtGui import QColor
 from qtpy.QtWidgets import QAbstractButton, QAbstractSlider, QApplication, QLabel, QWidget
 
+import sfumato_ui
 from sfumato import Scene
 from sfumato.scene import ClipPlane
 from sfumato_ui.section import Section
-from sfumato_ui.tab_order import in_visual_order
+from sfumato_ui.tab_order import in_visual_order, widgets_of
 from sfumato_ui.theme import PICTURE_GREY, TARGET, THEMES, Theme
 from sfumato_ui.window import MainWindow
 
@@ -133,7 +135,14 @@ def test_each_tab_has_at_most_seven_essentials(make_window: object) -> None:
     """What a tab shows while its sections are closed; a heading's group counts as one."""
     window: MainWindow = make_window()  # type: ignore[operator]
     for page in (window.light_page, window.material_page, window.view_page):
-        shown = [page.column.itemAt(i).widget() for i in range(page.column.count())]
-        rows = [w for w in shown if w is not None and not isinstance(w, QLabel | Section)]
+        shown = widgets_of(page.column)
+        rows = [w for w in shown if not isinstance(w, QLabel | Section)]
         groups = [w for w in rows if any(in_visual_order(w))]
         assert 0 < len(groups) <= 7, [type(w).__name__ for w in groups]
+
+
+def test_nobody_asks_layouts_for_their_items() -> None:
+    """After hours of use PySide took a VTK surface, and a table's header, for a layout's item (see `tab_order`)."""
+    for file in Path(sfumato_ui.__file__).parent.rglob("*.py"):
+        asked = re.search(r"\.(itemAt|takeAt)\(", file.read_text(encoding="utf-8"))
+        assert asked is None, file

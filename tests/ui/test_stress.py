@@ -48,6 +48,8 @@ OTHERS = (
 )  # fmt: skip
 #: Seconds after which a dialog that nobody answers is given up by Esc.
 PATIENCE = 0.15
+#: What a technique refuses, and says so: no failure.
+REFUSED = "the reference knows 1D functions alone"
 #: Dialogs that the window has.
 DIALOGS = {"ExportDialog", "KeyboardDialog", "CommandPalette", "QFileDialog", "QColorDialog"}
 
@@ -62,7 +64,7 @@ class Anybody:
         self.dialogs: set[str] = set()
         self.failures: list[str] = []
         self._seen: dict[QWidget, float] = {}
-        window.worker.failed.connect(lambda words, remedy: self.failures.append(words))
+        window.worker.failed.connect(self._on_failed)
         for name, action in window.commands.actions.items():
             action.triggered.connect(lambda _=False, name=name: self.done.add(name))
         # Loops of events of their own (menus, the system's dialogs) do not keep us: somebody presses Esc.
@@ -73,6 +75,10 @@ class Anybody:
             (0.26, self.command), (0.2, self.button), (0.14, self.drag_picture), (0.1, self.key),
             (0.1, self.slider), (0.06, self.number), (0.05, self.menu), (0.04, self.wheel), (0.05, self.undo),
         )  # fmt: skip
+
+    def _on_failed(self, words: str, remedy: str) -> None:
+        if REFUSED not in words:
+            self.failures.append(words)
 
     def one_of(self, things: Any) -> Any:
         return things[int(self.rng.integers(len(things)))]

@@ -19,6 +19,7 @@ from qtpy.QtCore import QPoint, Qt
 from sfumato import Camera, Scene
 from sfumato_ui import camera_moves
 from sfumato_ui.quality import QUALITIES, chosen_quality
+from sfumato_ui.tab_order import widgets_of
 from sfumato_ui.window import MainWindow
 
 LEFT = Qt.MouseButton.LeftButton
@@ -59,7 +60,7 @@ def test_quality_is_kept_and_refines_as_far(
 
 def test_standard_views_follow_the_buttons(window: MainWindow, qtbot: QtBot) -> None:
     window.panel.setCurrentIndex(2)
-    qtbot.mouseClick(window.view_page.views.layout().itemAt(5).widget(), LEFT)
+    qtbot.mouseClick(widgets_of(window.view_page.views.layout())[5], LEFT)
     assert window.editor.scene.camera.basis().back == pytest.approx((0, 0, -1), abs=1e-6)
     qtbot.mouseClick(window.view_page.parallel, LEFT, pos=QPoint(12, 12))
     assert window.editor.scene.camera.parallel_projection

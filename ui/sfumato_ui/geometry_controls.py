@@ -195,12 +195,10 @@ class GeometryControls(Section):
                 box.clear()
                 for text, data in items.items():
                     box.addItem(text, data)
-        while self._column.count():
-            item = self._column.takeAt(0)
-            widget = item.widget() if item is not None else None
-            if widget is not None:
-                widget.hide()
-                widget.deleteLater()
+        for slider in self.sliders.values():
+            self._column.removeWidget(slider)
+            slider.hide()
+            slider.deleteLater()
         self.sliders = {
             name: self._slider(name, geometry) for name in LINE_SLIDERS if isinstance(geometry.shape, Lines)
         }

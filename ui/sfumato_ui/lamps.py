@@ -6,6 +6,7 @@ from qtpy.QtCore import QPoint, QRect
 from qtpy.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from sfumato import Light, Scene
+from sfumato.scene import MAX_LIGHTS
 from sfumato.scene.light import shining
 
 from .editing import Editor
@@ -35,7 +36,12 @@ class LampRow(QWidget):
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(4)
-        self._rows: list[QHBoxLayout] = []
+        self._rows = [QHBoxLayout() for _ in range(-(-MAX_LIGHTS // IN_A_ROW))]
+        for row in self._rows:
+            row.setSpacing(4)
+            row.addStretch(1)
+            self._column.addLayout(row)
+        self._placed = -1
         self.chips: list[LampChip] = []
         self.name_line: NameLine | None = None
         self.add = QToolButton(self)
@@ -56,6 +62,8 @@ class LampRow(QWidget):
             self._append_chip()
         while len(self.chips) > len(lights):
             chip = self.chips.pop()
+            for row in self._rows:
+                row.removeWidget(chip)
             chip.hide()
             chip.deleteLater()
         self._arrange()
@@ -70,22 +78,15 @@ class LampRow(QWidget):
 
     def _arrange(self) -> None:
         """Put the chips into rows, and the button behind the last."""
-        count = max(1, -(-len(self.chips) // IN_A_ROW))
-        placed = sum(row.count() for row in self._rows) == len(self.chips) + len(self._rows) + 1
-        if placed and len(self._rows) == count:
+        if self._placed == len(self.chips):
             return
+        self._placed = len(self.chips)
         for row in self._rows:
-            while row.count():
-                row.takeAt(0)
-            self._column.removeItem(row)
-        self._rows = [QHBoxLayout() for _ in range(count)]
-        for number, row in enumerate(self._rows):
-            row.setSpacing(4)
-            for chip in self.chips[IN_A_ROW * number : IN_A_ROW * (number + 1)]:
-                row.addWidget(chip)
-            row.addStretch(1)
-            self._column.addLayout(row)
-        self._rows[-1].addWidget(self.add)
+            for widget in (*self.chips, self.add):
+                row.removeWidget(widget)
+        for number, chip in enumerate(self.chips):
+            self._rows[number // IN_A_ROW].insertWidget(number % IN_A_ROW, chip)
+        self._rows[max(0, len(self.chips) - 1) // IN_A_ROW].addWidget(self.add)
 
     def refresh_theme(self) -> None:
         """Take the theme's icon colours."""

@@ -49,6 +49,7 @@ class Section(QWidget):
         self.header.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.header.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.body = QWidget()
+        self._widgets: list[QWidget] = []
         self._inside = inside = QVBoxLayout(self.body)
         inside.setContentsMargins(0, 4, 0, 4)
         inside.setSpacing(6)
@@ -73,14 +74,15 @@ class Section(QWidget):
 
     def clear(self) -> None:
         """Remove what is in it."""
-        while self._inside.count():
-            widget = self._inside.takeAt(0).widget()
-            if widget is not None:
-                widget.hide()
-                widget.deleteLater()
+        for widget in self._widgets:
+            self._inside.removeWidget(widget)
+            widget.hide()
+            widget.deleteLater()
+        self._widgets.clear()
 
     def add(self, widget: QWidget) -> None:
         """Put a widget at its end."""
+        self._widgets.append(widget)
         self._inside.addWidget(widget)
 
     def _on_toggled(self, opened: bool, remember: bool = True) -> None:

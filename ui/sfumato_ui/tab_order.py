@@ -1,4 +1,8 @@
-"""Tab goes through the controls as the eye does: in the order of the layouts."""
+"""Tab goes through the controls as the eye does: in the order of the layouts.
+
+Layouts are asked for the places of what is in them, never for their items (`itemAt`, `takeAt`): Qt frees an item
+with its widget, PySide6 6.9 does not notice, and takes what comes to stand at the same address for that item.
+"""
 
 from __future__ import annotations
 
@@ -27,16 +31,28 @@ def in_visual_order(root: QWidget) -> Iterator[QWidget]:
     elif isinstance(root, QScrollArea):
         yield from in_visual_order(root.widget())
     else:
-        yield from _in_layout(root.layout())
+        layout = root.layout()
+        if layout is not None:
+            yield from _in_layout(layout, [child for child in root.children() if isinstance(child, QWidget)])
 
 
-def _in_layout(layout: QLayout | None) -> Iterator[QWidget]:
-    for i in range(layout.count() if layout is not None else 0):
-        item = layout.itemAt(i) if layout is not None else None
-        if item is not None and item.widget() is not None:
-            yield from in_visual_order(item.widget())
-        elif item is not None:
-            yield from _in_layout(item.layout())
+def widgets_of(layout: QLayout) -> list[QWidget]:
+    """Return the widgets that stand in a layout itself, in its order."""
+    parent = layout.parentWidget()
+    children = parent.children() if parent is not None else ()
+    inside = [c for c in children if isinstance(c, QWidget) and layout.indexOf(c) >= 0]
+    return sorted(inside, key=layout.indexOf)
+
+
+def _in_layout(layout: QLayout, widgets: list[QWidget]) -> Iterator[QWidget]:
+    """Yield what Tab can reach in a layout of some widgets, and in the layouts within it."""
+    inside: list[QWidget | QLayout] = [w for w in widgets if layout.indexOf(w) >= 0]
+    inside += [child for child in layout.children() if isinstance(child, QLayout)]
+    for thing in sorted(inside, key=layout.indexOf):
+        if isinstance(thing, QLayout):
+            yield from _in_layout(thing, widgets)
+        else:
+            yield from in_visual_order(thing)
 
 
 def set_tab_order(root: QWidget) -> None:

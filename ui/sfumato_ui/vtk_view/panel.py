@@ -15,6 +15,7 @@ from qtpy.QtWidgets import (
     QSizePolicy,
     QToolButton,
     QVBoxLayout,
+    QWidget,
 )
 
 from sfumato import Lines, Roi, Scene, Surface, Tracing
@@ -125,7 +126,8 @@ class VtkPanel(QFrame):
         self._column.setSpacing(4)
         self._column.addLayout(head)
         self._column.addLayout(below)
-        self._column.addStretch(1)
+        self._room = QWidget()
+        self._column.addWidget(self._room, 1)
         self.setMinimumWidth(260)
         self._show_tool()
         self.refresh_theme()
@@ -155,7 +157,8 @@ class VtkPanel(QFrame):
         if problem or self.stage is None:
             self.failed.emit(problem)
             return
-        self._column.takeAt(self._column.count() - 1)
+        self._column.removeWidget(self._room)
+        self._room.deleteLater()
         self._column.addWidget(self.stage.view, 1)
         self.stage.picked.connect(self._on_picked)
         self.stage.clicked.connect(self._on_clicked)
