@@ -73,8 +73,8 @@ class Section(QWidget):
         self.header.setChecked(opened)
 
     def clear(self) -> None:
-        """Remove what is in it."""
-        for widget in self._widgets:
+        """Delete what is in it, but not what has another parent by now."""
+        for widget in [w for w in self._widgets if w.parentWidget() is self.body]:
             self._inside.removeWidget(widget)
             widget.hide()
             widget.deleteLater()
