@@ -57,10 +57,11 @@ def draw_letters(painter: QPainter, area: QRect, letters: dict[str, str] | None)
 
 
 def draw_hint(painter: QPainter, area: QRect, text: str) -> None:
-    """Draw the hint in the picture's lower right corner, where the subject seldom is and no letter."""
+    """Draw the hint in the lower right corner, where the subject seldom is; in a narrow picture above the letters."""
     metrics = painter.fontMetrics()
-    width, height = metrics.horizontalAdvance(text) + 28, metrics.height() + 14
-    draw_text(painter, QRectF(area.right() - width - 7, area.bottom() - height - 7, width, height), text)
+    width, height, side = metrics.horizontalAdvance(text) + 28, metrics.height() + 14, metrics.height() + 4
+    lift = side + 14 if width + 15 > (area.width() - side) / 2 else 7
+    draw_text(painter, QRectF(area.right() - width - 7, area.bottom() - height - lift, width, height), text)
 
 
 def draw_badge(painter: QPainter, area: QRect, text: str) -> None:

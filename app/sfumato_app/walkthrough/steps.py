@@ -219,6 +219,10 @@ def _shapes(hand: Hand) -> None:
     """Choose a function of two dimensions if there is one, else make it one; cut it to steeper gradients."""
     page = hand.window.material_page
     gallery, transfer = page.presets, page.transfer
+    page.ensureWidgetVisible(page.bar)
+    if not page.bar.unfolded:
+        hand.click(page.bar.unfold)
+        pause(60)
     page.ensureWidgetVisible(gallery)
     glass = next((i for i in map(gallery.item, range(gallery.count())) if i.text() == "Glass skin"), None)
     if glass is not None:
@@ -262,6 +266,14 @@ def _clip_plane(hand: Hand) -> None:
     hand.rest()
 
 
+def _solid(hand: Hand) -> None:
+    """Turn the plane towards the eye and make its face solid."""
+    page = hand.window.view_page
+    hand.click(next(button for button in page.clip.cuts if button.text() == "Coronal"))
+    hand.click(page.solid, QPoint(12, page.solid.height() // 2))
+    hand.rest()
+
+
 def _crop(hand: Hand) -> None:
     hand.click(hand.window.view_page.clip.remove)
     tool, view = _tool(hand, "clip"), hand.window.viewport.view
@@ -278,6 +290,7 @@ def _view_more(hand: Hand) -> None:
     pause(60)
     hand.click(page.more.header)
     _scroll_down(hand, page)
+    hand.click(page.cube, QPoint(12, page.cube.height() // 2))
     hand.rest()
 
 
@@ -411,8 +424,9 @@ WALK: tuple[Step, ...] = (
     ),
     ("view", "View: orthographic", _view),
     ("clip-plane", "A clip plane, moved by its handle", _clip_plane),
+    ("solid-cut", "The plane towards the eye, its cut face solid", _solid),
     ("crop", "The crop box, moved by its handle", _crop),
-    ("view-more", "Quality, sampling and theme", _view_more),
+    ("view-more", "Quality, sampling and theme; the orientation cube", _view_more),
     ("slices", "Slice views beside the picture, with the lamps in them", _slices),
     ("open-menu", "Open: files, folders, recent ones, samples", _open_menu),
     ("export", "Export for print", _export),
