@@ -34,7 +34,9 @@ def matter(thin: float) -> TransferFunction:
     return TransferFunction.from_points(points, unit_distance=1.0)
 
 
-def stage(technique: str, solid: bool = True, thin: float = 1 - float(np.exp(-THIN)), **more: object) -> Scene:
+def stage(
+    technique: str, solid: bool = True, thin: float = 1 - float(np.exp(-THIN)), **more: object
+) -> Scene:
     """The blocks, cut through the middle, seen from the front."""
     volume = blocks()
     camera = Camera.fit(volume.corners(), "front", parallel_projection=True, fill=1.0)
@@ -66,7 +68,10 @@ def test_what_is_not_shown_stays_open_and_no_cut_changes_nothing() -> None:
     assert picture[:4, :, 3].max() == 0
     whole = [linear(stage("raycast", solid, clip=())) for solid in (True, False)]
     assert np.array_equal(*whole)
-    off = [linear(stage("raycast", solid, clip=(ClipPlane(CUT.point, CUT.normal, False),))) for solid in (True, False)]
+    off = [
+        linear(stage("raycast", solid, clip=(ClipPlane(CUT.point, CUT.normal, False),)))
+        for solid in (True, False)
+    ]
     assert np.array_equal(*off)
 
 
@@ -77,10 +82,16 @@ def test_a_side_of_the_crop_box_is_a_cut_face_too() -> None:
     assert np.abs(plane - box).mean() < 0.002
 
 
-@pytest.mark.parametrize("technique", ["raycast-phong", "multidirectional", "cone", "extinction", "local-occlusion"])
+@pytest.mark.parametrize(
+    "technique",
+    ["raycast-phong", "cone", "extinction"]
+    + [pytest.param(t, marks=pytest.mark.slow) for t in ("multidirectional", "local-occlusion")],
+)
 def test_thin_matter_looks_like_solid_matter(technique: str) -> None:
     """A face of thin matter has the light of one of opaque matter, though that of the volume is another."""
-    pictures = [linear(stage(technique, solid, thin)) for solid, thin in ((True, 0.1), (True, 0.97), (False, 0.1))]
+    pictures = [
+        linear(stage(technique, solid, thin)) for solid, thin in ((True, 0.1), (True, 0.97), (False, 0.1))
+    ]
     thin, opaque, open_cut = (mean_of(p, 10, 38)[:3].mean() for p in pictures)
     assert thin == pytest.approx(opaque, rel=0.12)
     assert abs(open_cut - opaque) > 2 * abs(thin - opaque)
@@ -122,7 +133,11 @@ def test_the_picked_surface_is_the_face() -> None:
     for solid, depth in ((True, 15.5), (False, None)):
         scene = stage("cone", solid)
         found = surface_under(scene, -0.5, -0.5, 1.0)
-        assert (found is None) if depth is None else found is not None and found[1] == pytest.approx(depth, abs=0.3)
+        assert (
+            (found is None)
+            if depth is None
+            else found is not None and found[1] == pytest.approx(depth, abs=0.3)
+        )
     material = material_under(stage("cone"), -0.5, -0.5, 1.0)
     assert material is not None
     assert material.value == pytest.approx(100)
