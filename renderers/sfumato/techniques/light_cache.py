@@ -12,8 +12,8 @@ from ..gpu import Store
 #: Bytes of textures that are kept; the lamps of the present frame are kept in any case.
 BUDGET = 512 << 20
 BYTES_PER_TEXEL = 4
-#: So many textures are kept at most: of small ones a driver holds more than their bytes.
-MOST = 24
+#: Textures that are kept at most: three for each of sixteen lamps. Of small ones a driver holds more than their bytes.
+MOST = 48
 #: Part of a device's whole budget that light volumes may take.
 SHARE = 0.25
 
