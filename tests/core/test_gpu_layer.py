@@ -125,7 +125,7 @@ def test_the_newest_variants_are_kept_and_what_is_held_still_draws(device: Devic
     held = variants.get((("NUMBER", 0),))
     alive = [weakref.ref(variants.get((("NUMBER", n),))) for n in range(1, VARIANTS_KEPT + 10)]
     variants.get((("NUMBER", 10),))  # kept, and now the youngest
-    variants.get((("NUMBER", 100),))
+    variants.get((("NUMBER", 1000),))
     device.collect()
     assert sum(program() is not None for program in alive) == VARIANTS_KEPT - 1
     assert alive[9]() is not None

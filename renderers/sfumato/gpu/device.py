@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import sys
 import threading
+from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -55,6 +56,8 @@ class Device:
         self._thread = threading.get_ident()
         self._closed = False
         self.store = Store()
+        #: Variants of shaders by identity, those asked for last at the end: where each is kept (`Variants`).
+        self.recent_variants: OrderedDict[int, tuple[dict[Any, Any], Any]] = OrderedDict()
         info = self.ctx.info
         self.name = str(info["GL_RENDERER"])
         self.version = str(info["GL_VERSION"])

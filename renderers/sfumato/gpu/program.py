@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -157,14 +156,15 @@ class Program:
         self._program.release()
 
 
-#: Programs of one shader that are kept: a software renderer takes 3 to 5 MB for each, and there are hundreds.
-VARIANTS_KEPT = 24
+#: Variants that a device keeps: a software renderer takes 3 to 5 MB for each, and there are hundreds.
+VARIANTS_KEPT = 96
 
 
 class Variants:
-    """Programs of one fragment shader by their defines, each compiled when first asked for; the newest are kept.
+    """Programs of one fragment shader by their defines, each compiled when first asked for.
 
-    One that goes is freed once nobody holds it any more: a picture that is being drawn may.
+    A device keeps those that were asked for last, whatever their shader. One that goes is freed once nobody holds it
+    any more: a picture that is being drawn may.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ class Variants:
     def __init__(self, device: Device, fragment: str, vertex: str = "") -> None:
         self.device = device
         self._fragment, self._vertex = fragment, vertex
-        self._programs: OrderedDict[tuple[tuple[str, int], ...], Program] = OrderedDict()
+        self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
 
     def get(self, defines: tuple[tuple[str, int], ...]) -> Program:
         """Return the program of a set of defines."""
@@ -184,14 +184,19 @@ class Variants:
                 (PACKAGE / self._vertex).read_text(encoding="utf-8") if self._vertex else FULLSCREEN_VERTEX
             )
             self._programs[defines] = Program(self.device, ShaderSource(self._fragment, defines), vertex)
-        self._programs.move_to_end(defines)
-        while len(self._programs) > VARIANTS_KEPT:
-            self._programs.popitem(last=False)
-        return self._programs[defines]
+        program = self._programs[defines]
+        recent = self.device.recent_variants
+        recent[id(program)] = (self._programs, defines)
+        recent.move_to_end(id(program))
+        while len(recent) > VARIANTS_KEPT:
+            programs, oldest = recent.popitem(last=False)[1]
+            del programs[oldest]
+        return program
 
     def release(self) -> None:
         """Free the programs."""
         for program in self._programs.values():
+            self.device.recent_variants.pop(id(program), None)
             program.release()
         self._programs.clear()
 
