@@ -74,10 +74,9 @@ void main() {
 #else
     vec2 tau = vec2(classify_extinction(s0, s1), classify_extinction(s1, s2));
 #endif
-    tau = vec2(SOLIDIFIED(tau.x, mix(enter, leave, 0.25)), SOLIDIFIED(tau.y, mix(enter, leave, 0.75)));
     // Optical depths of the slab's halves along the axis.
     vec2 halves = tau * u_thickness * max(vec2(min(range.y, 0.5) - range.x, range.y - max(range.x, 0.5)), 0.0);
-    float absorbed = halves.x + halves.y;
+    float absorbed = halves.x + halves.y + FACES_PASSED(enter, leave - enter, range, 1.0);
 #else
     const vec2 halves = vec2(0.0);
     const float absorbed = 0.0;

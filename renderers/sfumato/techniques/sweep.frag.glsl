@@ -53,9 +53,9 @@ void main() {
     float value = volume_value(leave);
     // Tiles are swept from one slab before anything in them can be seen: where nobody has looked there is nothing to see.
     float s0 = center.g >= 0.0 ? center.g : value;
-    vec3 middle = 0.5 * (enter + leave);
-    float tau = SOLIDIFIED(extinction_around(s0, value, middle), middle);
-    float absorbed = float(VOLUME) * tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
+    float tau = extinction_around(s0, value, 0.5 * (enter + leave));
+    float absorbed = tau * u_thickness * max(range.y - range.x, 0.0);    // optical depth along the axis
+    absorbed = float(VOLUME) * (absorbed + FACES_PASSED(enter, leave - enter, range, 1.0));
 #endif
 #if !HOLLOW && GEOMETRY
     float passed = cover_passes(ivec2(gl_FragCoord.xy)).x;

@@ -21,12 +21,11 @@ float layer_of(int l, int i) { return float(l * u_layers_per_light + i - (i / u_
 float near_field(int l, vec3 t, float value, bool faint) {
     vec3 along = u_to_light[l];
     vec2 kept = kept_range(t, along, vec2(0.0, float(NEAR)));
-    float depth = 0.0;
+    float depth = FACES_PASSED(t, along, kept, float(NEAR)) / (u_step * u_path[l]);
     int stride = faint ? NEAR : 1;
     for (int k = 0; k < NEAR; k += stride) {
         float begin = float(k), end = float(k + stride), next = volume_value(t + along * end);
-        vec3 middle = t + along * (0.5 * (begin + end));
-        depth += SOLIDIFIED(extinction_around(value, next, middle), middle) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
+        depth += extinction_around(value, next, t + along * (0.5 * (begin + end))) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
         value = next;
     }
     return exp(-depth * u_step * u_path[l]);

@@ -29,6 +29,22 @@ vec3 cut_face(vec3 a, vec3 b, float entry) {
     return face / max(length(face), 1e-20);
 }
 
+// Optical depth of a cut face at a point of it.
+float depth_of_face(vec3 t) {
+    float value = volume_value(t);
+    return min(extinction_around(value, value, t) * u_solid, SOLID_DEPTH);
+}
+
+// Optical depth of the cut faces that a way a + b * s, s from 0 to `end`, comes in or goes out through; `kept` is its
+// part that is left, from kept_range.
+float faces_passed(vec3 a, vec3 b, vec2 kept, float end) {
+    float depth = 0.0;
+    if (kept.x >= kept.y) return depth;
+    if (kept.x > 0.0 && cut_face(a, b, kept.x) != vec3(0.0)) depth += depth_of_face(a + b * kept.x);
+    if (kept.y < end && cut_face(a + b * end, -b, end - kept.y) != vec3(0.0)) depth += depth_of_face(a + b * kept.y);
+    return depth;
+}
+
 // The nearest point of a cut face, as a way there in texture coordinates, and its distance in mm.
 vec4 way_to_cut(vec3 t) {
     vec4 nearest = vec4(0.0, 0.0, 0.0, 1e9);
@@ -51,10 +67,11 @@ vec4 way_to_cut(vec3 t) {
 float solid_extinction(float tau, vec3 t, float layer) {
     vec4 way = way_to_cut(t);
     if (way.w >= layer) return tau;
-    float value = volume_value(t + way.xyz);
-    return max(tau, min(extinction_around(value, value, t + way.xyz) * u_solid, SOLID_DEPTH) / layer);
+    return max(tau, depth_of_face(t + way.xyz) / layer);
 }
 #define SOLIDIFIED(tau, t) solid_extinction(tau, t, u_solid_layer)
+#define FACES_PASSED(a, b, kept, end) faces_passed(a, b, kept, end)
 #else
 #define SOLIDIFIED(tau, t) (tau)
+#define FACES_PASSED(a, b, kept, end) 0.0
 #endif
