@@ -59,14 +59,11 @@ def _expand(path: Path, files: list[str], done: set[Path]) -> str:
 class Program:
     """A linked program whose uniforms are set by name; names that the compiler dropped are ignored."""
 
-    def __init__(
-        self, device: Device, fragment: ShaderSource, vertex: str | ShaderSource = FULLSCREEN_VERTEX
-    ) -> None:
+    def __init__(self, device: Device, fragment: ShaderSource, vertex: str = FULLSCREEN_VERTEX) -> None:
         self.device = device
         text, files = fragment.text()
-        corners = vertex if isinstance(vertex, str) else vertex.text()[0]
         try:
-            self._program = device.ctx.program(vertex_shader=corners, fragment_shader=text)
+            self._program = device.ctx.program(vertex_shader=vertex, fragment_shader=text)
         except Exception as error:  # moderngl raises its own bare Error
             raise GpuError(
                 f"shader {fragment.file} does not compile", _name_lines(str(error), files), "other technique"

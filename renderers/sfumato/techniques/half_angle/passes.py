@@ -15,8 +15,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ...gpu import Device, Program, ShaderSource, Target
-from ...gpu.program import FULLSCREEN_VERTEX
+from ...gpu import Device, Program, Target, Variants
 from ..footprint import kernel_moments, stencil_for
 from ..frame import Frame
 from ..marcher import (
@@ -65,7 +64,9 @@ class HalfAnglePainter:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self._programs: dict[tuple[str, tuple[tuple[str, int], ...]], Program] = {}
+        self._eye = Variants(device, FOLDER + "eye.frag.glsl", FOLDER + "slice.vert.glsl")
+        self._hard = Variants(device, FOLDER + "light.frag.glsl", FOLDER + "slice.vert.glsl")
+        self._soft = Variants(device, FOLDER + "light.frag.glsl")
         self._buffers: list[Target] = []
 
     def paint(self, frame: Frame) -> Generator[float, None, None]:
@@ -97,7 +98,9 @@ class HalfAnglePainter:
         lights = frame.scene.active_lights[:1]
         color = np.asarray(lights[0].color) * lights[0].intensity if lights else np.zeros(3)
         emits = plan.material.tables.emits
-        program = self._program("eye.frag.glsl", plan.material, REVERSE=plan.reverse, EMISSION=emits)
+        program = self._eye.get(
+            (("REVERSE", int(plan.reverse)), ("EMISSION", int(emits)), *material_defines(plan.material))
+        )
         bind_material(program, plan.material, frame)
         set_view(program, frame, None)
         program.load_mesh(triangles, "in_world")
@@ -115,7 +118,8 @@ class HalfAnglePainter:
     def _prepare_light(self, frame: Frame, plan: Plan, triangles: Any) -> Program:
         """Set up the program that draws slices into the light buffer, and fill the buffer with light."""
         self._make_buffers(plan)
-        program = self._program("light.frag.glsl", plan.material, SOFT=plan.soft)
+        variants = self._soft if plan.soft else self._hard
+        program = variants.get((("SOFT", int(plan.soft)), *material_defines(plan.material)))
         bind_material(program, plan.material, frame)
         column, slope = plan.grid.columns(plan.slices.axis)
         to_texture = frame.volume.texture_from_world
@@ -173,18 +177,10 @@ class HalfAnglePainter:
                 buffer.texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
         self._buffers[0].clear(1.0)
 
-    def _program(self, file: str, material: Material, **defines: bool) -> Program:
-        wanted = (*((name, int(value)) for name, value in defines.items()), *material_defines(material))
-        if (file, wanted) not in self._programs:
-            vertex = FULLSCREEN_VERTEX if defines.get("SOFT") else ShaderSource(FOLDER + "slice.vert.glsl")
-            self._programs[file, wanted] = Program(self.device, ShaderSource(FOLDER + file, wanted), vertex)
-        return self._programs[file, wanted]
-
     def release(self) -> None:
         """Free the GPU objects."""
-        for program in self._programs.values():
-            program.release()
-        self._programs.clear()
+        for variants in (self._eye, self._hard, self._soft):
+            variants.release()
         self._release_buffers()
 
     def _release_buffers(self) -> None:

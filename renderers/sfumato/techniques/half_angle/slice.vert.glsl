@@ -1,3 +1,4 @@
+#version 330 core
 // A corner of a slice's section, in world space (mm), on its way to a picture.
 in vec3 in_world;
 uniform mat4 u_picture_from_world;
