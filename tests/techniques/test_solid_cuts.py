@@ -9,7 +9,9 @@ import sfumato
 from sfumato import Camera, ClipPlane, Light, Scene, SceneError, TransferFunction, Volume
 from sfumato.reference import cone as traced
 from sfumato.reference import local_occlusion, multidirectional
+from sfumato.renderer import Renderer
 from sfumato.scene.picking import material_under, surface_under
+from sfumato.techniques.frame import DRAG, FULL, Quality
 
 pytestmark = pytest.mark.gpu
 
@@ -83,9 +85,7 @@ def test_a_side_of_the_crop_box_is_a_cut_face_too() -> None:
 
 
 @pytest.mark.parametrize(
-    "technique",
-    ["raycast-phong", "cone", "extinction"]
-    + [pytest.param(t, marks=pytest.mark.slow) for t in ("multidirectional", "local-occlusion")],
+    "technique", ["raycast-phong", "multidirectional", "cone", "extinction", "local-occlusion"]
 )
 def test_thin_matter_looks_like_solid_matter(technique: str) -> None:
     """A face of thin matter has the light of one of opaque matter, though that of the volume is another."""
@@ -127,6 +127,28 @@ def test_a_solid_face_casts_a_shadow() -> None:
         scenes = (stage(technique, solid, 0.1, camera=camera, lights=lamp) for solid in (True, False))
         lit = [mean_of(linear(scene), 8, 14)[:3].mean() for scene in scenes]
         assert lit[0] < 0.2 * lit[1], technique
+
+
+@pytest.mark.parametrize(
+    "technique", ["cone", "multidirectional", "extinction", "local-occlusion", "half-angle"]
+)
+def test_a_drags_coarse_light_does_not_stay(technique: str) -> None:
+    """What is kept of light is the same whether it was worked out for a drag first, or for the still picture."""
+    scene = stage(technique, thin=0.1, clip=(ClipPlane(CUT.point, (0.3, 1.0, -0.4)),))
+
+    def last_of(*qualities: Quality) -> np.ndarray:
+        renderer = Renderer()
+        for quality in qualities:
+            picture = renderer.begin(scene, SIZE, quality)
+            while not (picture.frames and picture.settled):
+                for _ in picture.add_frame():
+                    pass
+            image = picture.picture()
+            picture.release()
+        renderer.close()
+        return np.asarray(image, dtype=float)
+
+    assert np.array_equal(last_of(DRAG, FULL), last_of(FULL))
 
 
 def test_the_picked_surface_is_the_face() -> None:

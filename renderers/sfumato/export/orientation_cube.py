@@ -102,7 +102,9 @@ def cube_pixels(camera: Camera, side: int, known: bool = True) -> np.ndarray:
     wide = side * _FINER
     grey, cover = Image.new("L", (wide, wide)), Image.new("L", (wide, wide))
     for face in faces(camera):
-        corners = [face.middle + a * face.right + b * face.up for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        corners = [
+            face.middle + a * face.right + b * face.up for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        ]
         outline = [tuple((c * (1, -1) + 1) * wide / 2) for c in corners]
         tone = round(255 * float(np.interp(face.facing, (0, 1), _FACE)))
         line = max(_FINER, wide // 48)

@@ -186,9 +186,7 @@ def open_png(
     return Scene.from_json(data, volume)
 
 
-def _volume_beside(
-    picture: Path, reference: Any, places: Sequence[str | os.PathLike[str]] = ()
-) -> Volume:
+def _volume_beside(picture: Path, reference: Any, places: Sequence[str | os.PathLike[str]] = ()) -> Volume:
     from ..io import MissingVolume, find_moved, load_known
 
     named, key = (reference.get(k) for k in ("path", "hash")) if isinstance(reference, dict) else (None, None)

@@ -112,7 +112,11 @@ class Store:
                 guests.remove(guest)
 
     def get(
-        self, key: Hashable, make: Callable[[], T], size: Callable[[T], int] | int = 0, most: int | None = None
+        self,
+        key: Hashable,
+        make: Callable[[], T],
+        size: Callable[[T], int] | int = 0,
+        most: int | None = None,
     ) -> T:
         """Return what is kept under a key, or make and keep it.
 

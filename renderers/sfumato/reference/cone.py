@@ -261,7 +261,9 @@ def _solid_faces(task: Task, p_world: np.ndarray, towards: np.ndarray, length: n
     """Return the optical depth of the solid faces that ways (n,) begin under or end at."""
     depth = np.zeros(len(p_world))
     ends = p_world + towards * length[:, None]
-    inside = length > 1e-7 * task.region.diagonal  # a way that leaves at once begins on the face, not under it
+    inside = (
+        length > 1e-7 * task.region.diagonal
+    )  # a way that leaves at once begins on the face, not under it
     begins = inside & task.region.on_solid_face(p_world, towards, inwards=True)
     leaves = inside & task.region.on_solid_face(ends, towards, inwards=False)
     for there, points in ((begins, p_world), (leaves, ends)):

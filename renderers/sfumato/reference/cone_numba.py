@@ -146,10 +146,10 @@ def _solid_depth(voxels, matrix, density, integral, diagonal, x, y, z):  # type:
 
 @_jit
 def _solid_faces(  # type: ignore[no-untyped-def]
-    voxels, matrix, density, integral, half_spaces, solid, diagonal, x, y, z, wx, wy, wz
+    voxels, matrix, density, integral, half_spaces, solid, diagonal, length, x, y, z, wx, wy, wz
 ):
-    """Optical depth of the solid faces that a way begins under or ends at."""
-    depth, length = 0.0, _to_edge(half_spaces, x, y, z, wx, wy, wz)
+    """Optical depth of the solid faces that a way of a length begins under or ends at."""
+    depth = 0.0
     if length <= 1e-7 * diagonal:  # it leaves at once: it begins on the face, not under it
         return depth
     if _on_solid_face(half_spaces, solid, diagonal, x, y, z, wx, wy, wz, True):
@@ -161,7 +161,9 @@ def _solid_faces(  # type: ignore[no-untyped-def]
 
 
 @_jit
-def _optical_depth(voxels, matrix, density, integral, empty, half_spaces, step, x, y, z, wx, wy, wz):  # type: ignore[no-untyped-def]
+def _optical_depth(  # type: ignore[no-untyped-def]
+    voxels, matrix, density, integral, empty, half_spaces, solid, diagonal, step, x, y, z, wx, wy, wz
+):
     length = _to_edge(half_spaces, x, y, z, wx, wy, wz)
     # Voxels that a step crosses at most along one axis: how many steps an empty distance is worth.
     pace = 0.0
@@ -186,6 +188,10 @@ def _optical_depth(voxels, matrix, density, integral, empty, half_spaces, step, 
         far = _value(voxels, matrix, x + wx * end, y + wy * end, z + wz * end)
         depth += _mean(density, integral, near, far, 0) * (end - t)
         near, known, k = far, True, k + 1
+    if depth < DARK and solid.any():
+        depth += _solid_faces(
+            voxels, matrix, density, integral, half_spaces, solid, diagonal, length, x, y, z, wx, wy, wz
+        )
     return depth
 
 
@@ -278,6 +284,8 @@ def _pixels(  # type: ignore[no-untyped-def]
                         integral,
                         empty,
                         half_spaces,
+                        solid,
+                        diagonal,
                         step,
                         at[0],
                         at[1],
@@ -286,22 +294,6 @@ def _pixels(  # type: ignore[no-untyped-def]
                         w[1],
                         w[2],
                     )
-                    if any_solid and depth < DARK:
-                        depth += _solid_faces(
-                            voxels,
-                            matrix,
-                            density,
-                            integral,
-                            half_spaces,
-                            solid,
-                            diagonal,
-                            at[0],
-                            at[1],
-                            at[2],
-                            w[0],
-                            w[1],
-                            w[2],
-                        )
                     if depth < DARK:
                         total += math.exp(-depth) * _slab_term(x, v, secants[lamp, k], rear[lamp])
                 light += radiance[lamp] * (

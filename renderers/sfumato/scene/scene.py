@@ -216,10 +216,20 @@ class Scene:
         return shining(self.lights)[: technique_for(self.technique).max_lights]
 
     @property
-    def has_solid_cuts(self) -> bool:
-        """Whether a clip plane or the crop box cuts the volume, and the faces are solid."""
+    def is_clipped(self) -> bool:
+        """Whether a clip plane is on."""
+        return any(plane.enabled for plane in self.clip)
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether clip planes or the crop box, which is the volume's, cut anything away."""
         cropped = max(self.crop.low) > 0 or min(self.crop.high) < 1
-        return self.solid_cuts and (cropped or any(plane.enabled for plane in self.clip))
+        return self.is_clipped or (cropped and self.volume is not None)
+
+    @property
+    def has_solid_cuts(self) -> bool:
+        """Whether there are cut faces, and they are solid."""
+        return self.solid_cuts and self.is_cut
 
     def light_angles(self) -> tuple[tuple[float, float], ...]:
         """Tilt and rotation in degrees of each active light, as the camera sees it."""
@@ -414,9 +424,7 @@ def _portable(volume_path: str, scene_path: Path) -> str:
         return str(Path(volume_path).resolve())
 
 
-def _find_volume(
-    reference: Any, scene_path: Path, places: Sequence[str | os.PathLike[str]] = ()
-) -> Volume:
+def _find_volume(reference: Any, scene_path: Path, places: Sequence[str | os.PathLike[str]] = ()) -> Volume:
     from ..io import OtherContent, find_moved, load_known
 
     if not isinstance(reference, dict) or not isinstance(reference.get("path"), str) or not reference["path"]:

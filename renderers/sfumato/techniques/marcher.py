@@ -33,7 +33,7 @@ EDGE = 0.05
 TOGETHER, TOGETHER_VOXELS = 4, 2.0
 #: Transfer functions whose tables are kept: more than the presets that the window shows side by side.
 FUNCTIONS_KEPT = 48
-#: Depth of the layer below a solid cut face that stops light, in voxels of what light is worked out on.
+#: Depth of the layer below a solid cut face that stops light, in voxels; where light is worked out more coarsely, more.
 SOLID_VOXELS = 1.5
 _FAR = 1e30
 
@@ -86,15 +86,20 @@ def prepare_material(frame: Frame, *, whole: bool = True) -> Material:
         lambda e: e.size,
         FUNCTIONS_KEPT,
     )
-    clipped = any(plane.enabled for plane in frame.scene.clip)
-    return Material(texture, tables, empty, clipped, frame.scene.has_solid_cuts, _opacity_key(frame))
+    scene = frame.scene
+    return Material(texture, tables, empty, scene.is_clipped, scene.has_solid_cuts, _opacity_key(frame))
 
 
 def _opacity_key(frame: Frame) -> Hashable:
     transfer, solid = frame.transfer, frame.scene.has_solid_cuts
     if transfer.regions:
         return frame.volume.key, solid, transfer
-    return frame.volume.key, solid, transfer.unit_distance, tuple((p.value, p.opacity) for p in transfer.points)
+    return (
+        frame.volume.key,
+        solid,
+        transfer.unit_distance,
+        tuple((p.value, p.opacity) for p in transfer.points),
+    )
 
 
 def material_defines(material: Material) -> tuple[tuple[str, int], ...]:
@@ -125,7 +130,7 @@ def bind_material(program: Program, material: Material, frame: Frame) -> None:
         u_table_size=float(tables.color.size[0]),
         u_gradient_scale=1 / tables.max_gradient if tables.max_gradient > 0 else 1.0,
         u_solid=volume.diagonal,
-        u_solid_layer=SOLID_VOXELS * volume.min_spacing * max(1.0, frame.quality.light, frame.quality.step),
+        u_solid_layer=SOLID_VOXELS * volume.min_spacing,
         **clip_uniforms(frame.scene, volume),
     )
 

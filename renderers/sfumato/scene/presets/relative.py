@@ -104,9 +104,7 @@ def plain_presets(levels: Levels) -> tuple[Preset, ...]:
     solid = "The surface of all that stands out from the background"
     return (
         _surface_preset(levels, CLAY, levels.surface, "Solid", solid, ""),
-        _surface_preset(
-            levels, CLAY, levels.inner, "Solid inside", "The surface of the brighter parts", ""
-        ),
+        _surface_preset(levels, CLAY, levels.inner, "Solid inside", "The surface of the brighter parts", ""),
         _surface_preset(levels, RED, levels.surface, "Solid red", solid + ", in the colour of blood", ""),
         Preset(
             "Translucent", translucent(levels, CLAY, "Translucent"), "Bright parts in a translucent hull", ""

@@ -14,14 +14,14 @@ uniform float u_near_end[4 * NEAR];      // shares of this way at which the ray 
 float near_field(int l, vec3 t, float value, bool faint) {
     vec3 along = u_to_light[l];
     vec2 kept = kept_range(t, along, vec2(0.0, 1.0));
-    float depth = FACES_PASSED(t, along, kept, 1.0) / u_near_length[l], begin = 0.0;
+    float depth = 0.0, begin = 0.0;
     for (int k = faint ? NEAR - 1 : 0; k < NEAR; ++k) {
         float end = u_near_end[l * NEAR + k], next = volume_value(t + along * end);
         depth += extinction_around(value, next, t + along * (0.5 * (begin + end))) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
         value = next;
         begin = end;
     }
-    return exp(-depth * u_near_length[l]);
+    return exp(-depth * u_near_length[l] - FACES_PASSED(t, along, kept, 1.0));
 }
 
 #if GEOMETRY

@@ -21,14 +21,14 @@ float layer_of(int l, int i) { return float(l * u_layers_per_light + i - (i / u_
 float near_field(int l, vec3 t, float value, bool faint) {
     vec3 along = u_to_light[l];
     vec2 kept = kept_range(t, along, vec2(0.0, float(NEAR)));
-    float depth = FACES_PASSED(t, along, kept, float(NEAR)) / (u_step * u_path[l]);
+    float depth = 0.0;
     int stride = faint ? NEAR : 1;
     for (int k = 0; k < NEAR; k += stride) {
         float begin = float(k), end = float(k + stride), next = volume_value(t + along * end);
         depth += extinction_around(value, next, t + along * (0.5 * (begin + end))) * max(min(kept.y, end) - max(kept.x, begin), 0.0);
         value = next;
     }
-    return exp(-depth * u_step * u_path[l]);
+    return exp(-depth * u_step * u_path[l] - FACES_PASSED(t, along, kept, float(NEAR)));
 }
 #endif
 

@@ -62,16 +62,16 @@ vec4 way_to_cut(vec3 t) {
     return nearest;
 }
 
-// What stops light at a place where the matter has extinction tau (per mm), if faces reach so deep: what is on the face
+// SOLIDIFIED: what stops light at a place where the matter has extinction tau (per mm), if faces reach so deep: what is on the face
 // counts, not what is below it, or thin matter over a surface that grazes the face would darken it.
 float solid_extinction(float tau, vec3 t, float layer) {
     vec4 way = way_to_cut(t);
     if (way.w >= layer) return tau;
     return max(tau, depth_of_face(t + way.xyz) / layer);
 }
-#define SOLIDIFIED(tau, t) solid_extinction(tau, t, u_solid_layer)
+#define SOLIDIFIED(tau, t, least) solid_extinction(tau, t, max(u_solid_layer, least))
 #define FACES_PASSED(a, b, kept, end) faces_passed(a, b, kept, end)
 #else
-#define SOLIDIFIED(tau, t) (tau)
+#define SOLIDIFIED(tau, t, least) (tau)
 #define FACES_PASSED(a, b, kept, end) 0.0
 #endif

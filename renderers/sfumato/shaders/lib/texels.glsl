@@ -38,5 +38,5 @@ float seen_value(vec3 t, out float there) {
 // Extinction per mm at a place.
 float matter_at(vec3 t) {
     float there, value = seen_value(t, there);
-    return there == 0.0 ? 0.0 : SOLIDIFIED(extinction_around(value, value, t), t);
+    return there == 0.0 ? 0.0 : SOLIDIFIED(extinction_around(value, value, t), t, 0.0);
 }

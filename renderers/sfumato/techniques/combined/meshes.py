@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...gpu import Device
-from ...scene import Geometry, Scene
+from ...scene import Geometry
 from ...scene.shapes import Lines, Mesh
 from ..frame import Frame
 
@@ -92,7 +92,6 @@ def shown_geometry(frame: Frame) -> Generator[float, None, tuple[Shown, ...]]:
     from ...geometry import build, known_mesh
 
     scene, shown = frame.scene, []
-    cuts = any(plane.enabled for plane in scene.clip) or not _whole(scene)
     for geometry in scene.geometry:
         if not geometry.visible:
             continue
@@ -100,14 +99,8 @@ def shown_geometry(frame: Frame) -> Generator[float, None, tuple[Shown, ...]]:
         if mesh is None:
             mesh = yield from build(geometry)
         if len(mesh.triangles):
-            shown.append(Shown(geometry, mesh, cuts and geometry.clipped, frame.quality.rough))
+            shown.append(Shown(geometry, mesh, scene.is_cut and geometry.clipped, frame.quality.rough))
     return tuple(shown)
-
-
-def _whole(scene: Scene) -> bool:
-    return scene.volume is None or (
-        min(scene.crop.low) <= 0 and max(scene.crop.low) <= 0 and min(scene.crop.high) >= 1
-    )
 
 
 def upload_meshes(frame: Frame, shown: tuple[Shown, ...]) -> Generator[float, None, tuple[MeshBuffers, ...]]:

@@ -88,9 +88,7 @@ class SurfacePainter:
         self.forget()
 
 
-def _key(
-    frame: Frame, shown: tuple[Shown, ...], meshes: tuple[MeshBuffers, ...], margin: int
-) -> Hashable:
+def _key(frame: Frame, shown: tuple[Shown, ...], meshes: tuple[MeshBuffers, ...], margin: int) -> Hashable:
     """Return what the picture of surfaces depends on."""
     things = tuple((item.geometry.mesh_key, item.drawn is item.mesh, cut_key(frame, item)) for item in shown)
     view = frame.camera, frame.whole_size, frame.size, frame.corner, tuple(frame.pixel_jitter), margin

@@ -37,7 +37,7 @@ void main() {
         float value = volume_value(t), magnitude = steepness(value, value, t);
         vec4 here = classify(value, value, magnitude) * kept_point(t);
 #ifdef SOLID
-        here *= solid_extinction(here.a, t, max(u_solid_layer, u_length)) / max(here.a, 1e-20);
+        here *= SOLIDIFIED(here.a, t, u_length) / max(here.a, 1e-20);
 #endif
         float dense = float(here.a >= u_dense);
         matter += vec3(here.a * (1.0 - dense), here.a * dense, dense / u_length);

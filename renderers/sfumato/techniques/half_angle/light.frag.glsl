@@ -38,7 +38,7 @@ float transmitted() {
     vec3 half_slab = u_along * (0.5 * u_spacing);
     float s0 = volume_value(here + half_slab), s1 = volume_value(here - half_slab);
     vec4 mean = classify(s0, s1, steepness(s0, s1, here));
-    return exp(-SOLIDIFIED(mean.a, here) * u_spacing * u_light_secant);
+    return exp(-SOLIDIFIED(mean.a, here, u_spacing) * u_spacing * u_light_secant);
 }
 
 void main() {

@@ -32,7 +32,7 @@ float matter(vec3 t, out vec3 shining) {
     float tau = classify_extinction(value, value);
 #endif
     shining = classify_emission(value, value, gradient) / max(tau, 1e-20) * (1.0 - exp(-tau * u_unit_distance));
-    return SOLIDIFIED(tau, t);
+    return SOLIDIFIED(tau, t, 0.0);
 #else
     return matter_at(t);
 #endif
