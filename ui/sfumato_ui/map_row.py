@@ -72,6 +72,8 @@ class MapRow(QWidget):
 def _strip(name: str) -> QIcon:
     """Return a map's colours from left to right."""
     colors = srgb(map_colors(name, np.linspace(0, 1, STRIP.width())))
-    pixels = np.ascontiguousarray(np.rint(255 * np.repeat(colors[None], STRIP.height(), axis=0)).astype(np.uint8))
+    pixels = np.ascontiguousarray(
+        np.rint(255 * np.repeat(colors[None], STRIP.height(), axis=0)).astype(np.uint8)
+    )
     image = QImage(pixels.data, STRIP.width(), STRIP.height(), 3 * STRIP.width(), QImage.Format.Format_RGB888)
     return QIcon(QPixmap.fromImage(image.copy()))

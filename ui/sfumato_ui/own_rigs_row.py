@@ -170,7 +170,12 @@ class OwnRigsRow(QWidget):
         if rig is None:
             return
         ask_for_export(
-            self.window(), "Export the rig", self._named(rig), SUFFIX, FILTER, lambda path: self._give(path, rig)
+            self.window(),
+            "Export the rig",
+            self._named(rig),
+            SUFFIX,
+            FILTER,
+            lambda path: self._give(path, rig),
         )
 
     def _give(self, path: str, rig: Rig) -> None:

@@ -88,7 +88,12 @@ class PresetFiles(QWidget):
             return
         name = transfer.name or "Transfer function"
         ask_for_export(
-            self.window(), "Export the function", name, SUFFIX, FILTER, lambda path: self._give(path, transfer)
+            self.window(),
+            "Export the function",
+            name,
+            SUFFIX,
+            FILTER,
+            lambda path: self._give(path, transfer),
         )
 
     def _give(self, path: str, transfer: TransferFunction) -> None:

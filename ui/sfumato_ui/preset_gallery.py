@@ -42,7 +42,7 @@ class PresetGallery(QListWidget):
     def __init__(self) -> None:
         super().__init__()
         self._presets: tuple[Preset, ...] = ()
-        self._words, self._folded = "", False
+        self._words, self._folded = "", True
         self.pictures: dict[int, QImage] = {}
         self.setViewMode(QListView.ViewMode.IconMode)
         self.setMovement(QListView.Movement.Static)

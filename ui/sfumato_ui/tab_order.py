@@ -33,7 +33,7 @@ def in_visual_order(root: QWidget) -> Iterator[QWidget]:
     else:
         layout = root.layout()
         if layout is not None:
-            yield from _in_layout(layout, [child for child in root.children() if isinstance(child, QWidget)])
+            yield from _in_layout(layout)
 
 
 def widgets_of(layout: QLayout) -> list[QWidget]:
@@ -44,13 +44,13 @@ def widgets_of(layout: QLayout) -> list[QWidget]:
     return sorted(inside, key=layout.indexOf)
 
 
-def _in_layout(layout: QLayout, widgets: list[QWidget]) -> Iterator[QWidget]:
-    """Yield what Tab can reach in a layout of some widgets, and in the layouts within it."""
-    inside: list[QWidget | QLayout] = [w for w in widgets if layout.indexOf(w) >= 0]
+def _in_layout(layout: QLayout) -> Iterator[QWidget]:
+    """Yield what Tab can reach in a layout, and in the layouts within it."""
+    inside: list[QWidget | QLayout] = [*widgets_of(layout)]
     inside += [child for child in layout.children() if isinstance(child, QLayout)]
     for thing in sorted(inside, key=layout.indexOf):
         if isinstance(thing, QLayout):
-            yield from _in_layout(thing, widgets)
+            yield from _in_layout(thing)
         else:
             yield from in_visual_order(thing)
 

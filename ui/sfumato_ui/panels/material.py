@@ -67,7 +67,6 @@ class MaterialPage(Page):
         self.finish()
         self._connect()
         self.bar.set_unfolded(bool(settings().value(UNFOLDED, False, type=bool)))
-        self._show_fold()
         self.refresh()
 
     # -- building ---------------------------------------------------------------------------------
