@@ -379,8 +379,8 @@ def draw_at_random(still_life: Volume, number: int, lights: tuple[int, ...]) -> 
         assert max(after) <= 1.02 * max(before) + 2
 
 
-def test_nothing_is_left_behind_by_sixty_pictures(still_life: Volume) -> None:
-    draw_at_random(still_life, 60, lights=(2,))
+def test_nothing_is_left_behind_by_a_hundred_pictures(still_life: Volume) -> None:
+    draw_at_random(still_life, 100, lights=(2,))
 
 
 @pytest.mark.slow

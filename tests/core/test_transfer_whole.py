@@ -53,7 +53,9 @@ def test_the_mirror_of_the_mirror_is_the_function() -> None:
     assert there.points[0].opacity == 0.9
     values = np.linspace(-1000, 900, 77)
     np.testing.assert_allclose(
-        there.evaluate_2d(values, np.full(77, 6.0)), function.evaluate_2d(-100 - values, np.full(77, 6.0)), atol=1e-6
+        there.evaluate_2d(values, np.full(77, 6.0)),
+        function.evaluate_2d(-100 - values, np.full(77, 6.0)),
+        atol=1e-6,
     )
     assert inverted(there) == function
 

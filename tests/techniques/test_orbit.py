@@ -17,8 +17,6 @@ pytestmark = pytest.mark.gpu
 LIT = [t for t in techniques().values() if t.lit and t.id != "directional"]
 STEADY = [t for t in LIT if not t.orbit_pops]
 POPPING = [t for t in LIT if t.orbit_pops]
-#: Whose orbit takes longest: with --all.
-COSTLY = ("extinction", "combined")
 SIDE, BLOCKS, STEPS = 64, 8, 24
 #: What of the largest change over a step may still be there over a 32nd of it. A smooth change leaves a 32nd,
 #: a jump all; voxels and slices make shading a little uneven.
@@ -69,11 +67,7 @@ def assert_no_pop(means: Means, at: np.ndarray) -> None:
         assert rest <= max(LEFT_OVER * largest, FLOOR), told
 
 
-@pytest.mark.parametrize(
-    "technique",
-    [pytest.param(t, marks=pytest.mark.slow if t.id in COSTLY else ()) for t in STEADY],
-    ids=lambda t: t.id,
-)
+@pytest.mark.parametrize("technique", STEADY, ids=lambda t: t.id)
 def test_orbit_has_no_pop(
     technique: Technique, still: Callable[..., Scene], draw: Draw, side_of: Callable[[str, int], int]
 ) -> None:

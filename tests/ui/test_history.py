@@ -91,8 +91,7 @@ def test_arrow_keys_and_enter_return_and_undo_moves_the_mark(
 def test_steps_get_their_pictures(window: MainWindow, hand: Hand, qtbot: QtBot) -> None:
     three_steps(window, hand)
     row = window.history
-    # From what was shown, the drawer being closed; the row hears of a picture after the viewport.
-    qtbot.waitUntil(lambda: row.pictures.of(row.steps[-1].scene) is not None, timeout=20_000)
+    assert row.pictures.of(row.steps[-1].scene) is not None, "from what was shown, the drawer being closed"
     hand.press(Qt.Key.Key_H)
     qtbot.waitUntil(lambda: all(row.pictures.of(s.scene) is not None for s in row.steps), timeout=60_000)
     one, other = (row.pictures.of(row.steps[i].scene) for i in (0, 3))

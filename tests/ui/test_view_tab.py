@@ -144,7 +144,7 @@ print(json.dumps(out))
 """
 
 
-@pytest.mark.parametrize("factor", [1.5, pytest.param(2.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("factor", [1.5, 2.0])
 def test_a_dense_screen_is_sharp_and_in_place(factor: float, tmp_path: Path) -> None:
     env = {**os.environ, "QT_SCALE_FACTOR": str(factor), "SFUMATO_SETTINGS": str(tmp_path)}
     run = subprocess.run(
