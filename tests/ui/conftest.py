@@ -72,6 +72,20 @@ def no_leaked_widgets(qapp: QApplication) -> Iterator[None]:
     assert not left, f"widgets left behind: {left}"
 
 
+def _activate(window: QWidget) -> None:
+    """Make a window the active one, as it is for a user: on a busy machine the screen takes a while to say so."""
+    until = time.monotonic() + 30
+    window.activateWindow()
+    asked = time.monotonic()
+    while not window.isActiveWindow() and time.monotonic() < until:
+        QApplication.processEvents()
+        time.sleep(0.002)
+        if time.monotonic() - asked > 1:
+            window.activateWindow()
+            asked = time.monotonic()
+    assert window.isActiveWindow(), "the screen did not make the window the active one"
+
+
 MakeWindow = Callable[..., MainWindow]
 
 
@@ -85,7 +99,7 @@ def make_window(qapp: QApplication) -> Iterator[MakeWindow]:
         made.append(window)
         window.resize(*size)
         window.show()
-        window.activateWindow()
+        _activate(window)
         return window
 
     yield make

@@ -10,7 +10,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtGui import QColor
-from qtpy.QtWidgets import QApplication, QColorDialog
+from qtpy.QtWidgets import QApplication, QColorDialog, QWidget
 
 from sfumato import Light, Scene
 from sfumato.scene.rigs import rigs
@@ -113,6 +113,21 @@ def test_leaving_the_line_takes_the_name(lit: MainWindow, qtbot: QtBot) -> None:
     lit.viewport.setFocus()
     qtbot.waitUntil(lambda: row.name_line is None)
     assert names(lit)[0] == "window"
+
+
+def test_back_from_another_window_the_lamp_has_the_keys(lit: MainWindow, qtbot: QtBot) -> None:
+    row = lit.light_page.lamps
+    qtbot.mouseDClick(row.chips[1], LEFT)
+    qtbot.keyClicks(row.name_line, "window")
+    other = QWidget()
+    qtbot.addWidget(other)
+    other.show()
+    other.activateWindow()
+    qtbot.waitUntil(lambda: row.name_line is None)
+    assert names(lit)[1] == "window"
+    other.close()
+    lit.activateWindow()
+    qtbot.waitUntil(lambda: QApplication.focusWidget() is row.chips[1])
 
 
 def test_lamps_change_places_by_drag_and_keys(lit: MainWindow, hand_of: Any, qtbot: QtBot) -> None:

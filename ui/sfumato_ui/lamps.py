@@ -171,7 +171,8 @@ class LampRow(QWidget):
         if name and index < len(lights) and name != lights[index].name:
             self._editor.change("Rename the lamp", **{f"lights.{index}.name": name})
         if line is not None:
-            had_focus = line.hasFocus()
+            # The window's own answer: the line has the focus there also while another window is active.
+            had_focus = self.window().focusWidget() is line
             line.hide()
             line.deleteLater()
             if had_focus and index < len(self.chips):
