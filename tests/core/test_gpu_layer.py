@@ -15,7 +15,7 @@ import pytest
 
 import sfumato
 from sfumato import CropBox, GpuError, Light, Scene, SceneError, TransferFunction, Volume
-from sfumato.gpu import Device, Program, ShaderSource, Store, Target, Variants
+from sfumato.gpu import LAYERED, Device, LayerTarget, Program, ShaderSource, Store, Target, Variants
 from sfumato.gpu import program as program_module
 from sfumato.gpu.program import VARIANTS_KEPT
 from sfumato.renderer import Quality, Renderer
@@ -131,6 +131,26 @@ def test_the_newest_variants_are_kept_and_what_is_held_still_draws(device: Devic
     assert alive[9]() is not None
     assert drawn(device, held).tolist() == [0, 0, 0, 0]
     assert drawn(device, variants.get((("NUMBER", 1),))).tolist() == [1, 1, 1, 1], "compiled anew"
+
+
+def test_one_draw_covers_layers_of_two_textures_and_tells_each_its_number(device: Device, shader: Any) -> None:
+    stages = [(Path(sfumato.__file__).parent / file).read_text(encoding="utf-8") for file in LAYERED]
+    source = shader(
+        "flat in int v_layer; layout(location = 0) out float o_a; layout(location = 1) out float o_b;\n"
+        "void main() { o_a = float(v_layer) + 0.01 * gl_FragCoord.x; o_b = -o_a; }\n"
+    )
+    program = Program(device, source, *stages)
+    textures = [device.ctx.texture3d((3, 2, 40), 1, dtype="f4", data=bytes(4 * 240)) for _ in range(2)]
+    target = LayerTarget(device, layers=2, size=(3, 2))
+    target.use_all(textures)
+    program.draw_layers(1, 20)
+    program.draw_layers(30, 10)
+    a, b = (np.frombuffer(t.read(), np.float32).reshape(40, 2, 3) for t in textures)
+    drawn_layers = [*range(1, 21), *range(30, 40)]
+    wanted = np.zeros((40, 2, 3))
+    wanted[drawn_layers] = np.array(drawn_layers)[:, None, None] + 0.01 * (np.arange(3) + 0.5)
+    assert np.allclose(a, wanted, atol=1e-5)
+    assert np.array_equal(b, -a)
 
 
 # -- targets ------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import sfumato
-from sfumato.gpu import Variants
+from sfumato.gpu import LAYERED, Variants
 from sfumato.renderer import FULL
 from sfumato.techniques.extinction.field import Field, FieldMaker, draw_layers, new_texture
 from sfumato.techniques.extinction.params import ExtinctionParams
@@ -66,10 +66,11 @@ class Neighbourhood:
         self._texture = new_texture(self._device, self._grid.size, 4, "nu2")
         self._terms = TermMaker(self._device)
         folder = "techniques/extinction/"
-        self._looking = Variants(self._device, folder + "neighbourhood.frag.glsl") if explicit else None
+        self._looking = Variants(self._device, folder + "neighbourhood.frag.glsl", *LAYERED) if explicit else None
 
     def settle(self) -> None:
-        """Nothing is kept that others could push out."""
+        """Draw once: textures are in memory and shaders at hand, as those of all other rows."""
+        self.draw()
 
     def draw(self) -> None:
         """Fill the texture."""

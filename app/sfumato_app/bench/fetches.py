@@ -69,8 +69,8 @@ class _CountingContext:
         else:
             setattr(self._ctx, name, value)
 
-    def program(self, *, vertex_shader: str, fragment_shader: str) -> Any:
-        return self._ctx.program(vertex_shader=vertex_shader, fragment_shader=counting(fragment_shader))
+    def program(self, *, fragment_shader: str, **others: str | None) -> Any:
+        return self._ctx.program(fragment_shader=counting(fragment_shader), **others)
 
 
 class FetchCounter:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import sfumato
-from sfumato.gpu import Device, Variants
+from sfumato.gpu import LAYERED, Device, Variants
 from sfumato.techniques.extinction.field import Field
 from sfumato.techniques.extinction.params import ExtinctionParams
 from sfumato.techniques.extinction.passes import ExtinctionPainter
@@ -21,7 +21,7 @@ class LookingTerms(TermMaker):
 
     def __init__(self, device: Device) -> None:
         super().__init__(device)
-        self._looking = Variants(device, "techniques/extinction/neighbourhood.frag.glsl")
+        self._looking = Variants(device, "techniques/extinction/neighbourhood.frag.glsl", *LAYERED)
 
     def ambient(
         self,

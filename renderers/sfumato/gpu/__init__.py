@@ -8,11 +8,12 @@ GPU objects are made, sized and freed here: `Device` (context, functions that mo
 
 from .device import Device, is_software
 from .memory import GpuObject, gpu_objects
-from .program import Program, ShaderSource, Variants
+from .program import LAYERED, Program, ShaderSource, Variants
 from .store import Store
 from .target import LayerTarget, Target
 
 __all__ = [
+    "LAYERED",
     "Device",
     "GpuObject",
     "LayerTarget",

@@ -66,6 +66,7 @@ class Device:
         self.max_texture_2d = int(info["GL_MAX_TEXTURE_SIZE"])
         self.max_layers = int(info["GL_MAX_ARRAY_TEXTURE_LAYERS"])
         u32, i32, u64, ptr = ctypes.c_uint, ctypes.c_int, ctypes.c_uint64, ctypes.c_void_p
+        self._attach_whole = self._function("glFramebufferTexture", None, u32, u32, u32, i32)
         self._attach_layer = self._function("glFramebufferTextureLayer", None, u32, u32, u32, i32, i32)
         self._fence_sync = self._function("glFenceSync", ptr, u32, u32)
         self._client_wait = self._function("glClientWaitSync", u32, ptr, u32, u64)
@@ -97,6 +98,10 @@ class Device:
     def attach_layer(self, attachment: int, texture: Any, layer: int) -> None:
         """Attach one layer of an array or 3D texture to the bound framebuffer (moderngl cannot)."""
         self._attach_layer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + attachment, texture.glo, 0, layer)
+
+    def attach_layers(self, attachment: int, texture: Any) -> None:
+        """Attach all layers of a texture to the bound framebuffer; a geometry shader chooses among them."""
+        self._attach_whole(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + attachment, texture.glo, 0)
 
     def clear(self, fbo: Any, *values: float) -> None:
         """Fill a framebuffer with a value, all of it.

@@ -59,11 +59,19 @@ def _expand(path: Path, files: list[str], done: set[Path]) -> str:
 class Program:
     """A linked program whose uniforms are set by name; names that the compiler dropped are ignored."""
 
-    def __init__(self, device: Device, fragment: ShaderSource, vertex: str = FULLSCREEN_VERTEX) -> None:
+    def __init__(
+        self,
+        device: Device,
+        fragment: ShaderSource,
+        vertex: str = FULLSCREEN_VERTEX,
+        geometry: str | None = None,
+    ) -> None:
         self.device = device
         text, files = fragment.text()
         try:
-            self._program = device.ctx.program(vertex_shader=vertex, fragment_shader=text)
+            self._program = device.ctx.program(
+                vertex_shader=vertex, fragment_shader=text, geometry_shader=geometry
+            )
         except Exception as error:  # moderngl raises its own bare Error
             raise GpuError(
                 f"shader {fragment.file} does not compile", _name_lines(str(error), files), "other technique"
@@ -103,6 +111,11 @@ class Program:
         """Draw the covering triangle."""
         self._take_units()
         self.device.draw_triangles(self._array, 0, 3)
+
+    def draw_layers(self, first: int, count: int) -> None:
+        """Draw the covering triangle into each of some layers, with a program of `LAYERED`."""
+        self._take_units()
+        self.device.draw_triangles(self._array, 3 * first, 3 * count)
 
     def draw_rects(self, count: int) -> None:
         """Draw rectangles, six vertices each, placed by the vertex shader (instances are slow in software)."""
@@ -153,6 +166,9 @@ class Program:
         self._program.release()
 
 
+#: Vertex and geometry shader of programs whose `Program.draw_layers` covers layers of a target.
+LAYERED = ("shaders/layers.vert.glsl", "shaders/layers.geom.glsl")
+
 #: Variants that a device keeps: a software renderer takes 3 to 5 MB for each, and there are hundreds.
 VARIANTS_KEPT = 96
 
@@ -165,22 +181,25 @@ class Variants:
 
     Parameters
     ----------
-    fragment, vertex : str
+    fragment, vertex, geometry : str
         Shader files, relative to the package; without a vertex shader the programs cover the viewport.
     """
 
-    def __init__(self, device: Device, fragment: str, vertex: str = "") -> None:
+    def __init__(self, device: Device, fragment: str, vertex: str = "", geometry: str = "") -> None:
         self.device = device
-        self._fragment, self._vertex = fragment, vertex
+        self._fragment, self._vertex, self._geometry = fragment, vertex, geometry
         self._programs: dict[tuple[tuple[str, int], ...], Program] = {}
 
     def get(self, defines: tuple[tuple[str, int], ...]) -> Program:
         """Return the program of a set of defines."""
         if defines not in self._programs:
-            vertex = (
-                (PACKAGE / self._vertex).read_text(encoding="utf-8") if self._vertex else FULLSCREEN_VERTEX
+            vertex, geometry = (
+                (PACKAGE / file).read_text(encoding="utf-8") if file else other
+                for file, other in ((self._vertex, FULLSCREEN_VERTEX), (self._geometry, None))
             )
-            self._programs[defines] = Program(self.device, ShaderSource(self._fragment, defines), vertex)
+            assert vertex is not None
+            fragment = ShaderSource(self._fragment, defines)
+            self._programs[defines] = Program(self.device, fragment, vertex, geometry)
         program = self._programs[defines]
         recent = self.device.recent_variants
         recent[id(program)] = (self._programs, defines)

@@ -91,11 +91,11 @@ class LayerTarget:
         for k in range(self.layers):
             self.device.attach_layer(len(self.states) + k, texture, layer + k)
 
-    def use_each(self, textures: Sequence[Any], layer: int) -> None:
-        """Bind, with the same layer of several textures as the last attachments."""
+    def use_all(self, textures: Sequence[Any]) -> None:
+        """Bind, with all layers of several textures of one size in place of the stand-ins."""
         self.fbo.use()
         for k, texture in enumerate(textures):
-            self.device.attach_layer(len(self.states) + k, texture, layer)
+            self.device.attach_layers(len(self.states) + k, texture)
 
     def clear_layer(self, value: float) -> None:
         """Fill the first layer that `use` attached."""

@@ -6,13 +6,13 @@
 uniform vec3 u_light_color[4];       // linear RGB times intensity
 #include "world_light"
 
-uniform int u_layer;
+flat in int v_layer;
 uniform float u_light_scale;         // linear light that 1 stands for
 
 layout(location = 0) out vec4 o_voxel;
 
 void main() {
-    ivec3 voxel = ivec3(ivec2(gl_FragCoord.xy), u_layer);
+    ivec3 voxel = ivec3(ivec2(gl_FragCoord.xy), v_layer);
     vec3 t = (vec3(voxel) + 0.5) * u_voxel;
     ivec3 block = ivec3(min(t * u_blocks, vec3(textureSize(u_distance, 0)) - 0.5));
     o_voxel = vec4(texelFetch(u_volume, voxel, 0).r, 0.0, 0.0, 0.0);

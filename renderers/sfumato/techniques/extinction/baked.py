@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Hashable
 from typing import Any
 
-from ...gpu import Device, Program, Variants
+from ...gpu import LAYERED, Device, Program, Variants
 from ..frame import Frame
 from ..light_cache import LightCache
 from ..marcher import Material, bind_material
@@ -35,7 +35,7 @@ class Baker:
 
     def __init__(self, device: Device) -> None:
         self.device = device
-        self._programs = Variants(device, "techniques/extinction/baked.frag.glsl")
+        self._programs = Variants(device, "techniques/extinction/baked.frag.glsl", *LAYERED)
         self._kept = LightCache(
             lambda size: new_texture(device, size, 4, "nu2", linear=True),
             store=device.store,

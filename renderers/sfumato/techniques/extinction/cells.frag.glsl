@@ -10,7 +10,7 @@
 
 uniform vec3 u_first;        // texture coordinates of the corner of cell 0
 uniform vec3 u_cell;         // a cell's edges in texture coordinates
-uniform int u_layer;
+flat in int v_layer;
 uniform float u_length;      // edge of a cell in mm
 uniform float u_dense;       // extinction per mm from which matter counts as dense
 uniform float u_limit;       // largest extinction per mm that counts for light from all around
@@ -26,7 +26,7 @@ void main() {
 #if AMBIENT
     o_dimming = vec4(0.0);
 #endif
-    vec3 corner = u_first + u_cell * vec3(floor(gl_FragCoord.xy), float(u_layer));
+    vec3 corner = u_first + u_cell * vec3(floor(gl_FragCoord.xy), float(v_layer));
     ivec3 block = clamp(ivec3(floor((corner + 0.5 * u_cell) * u_blocks)), ivec3(0), textureSize(u_distance, 0) - 1);
     // A cell is not larger than a block: with a block between it and the next visible one, it is empty.
     if (texelFetch(u_distance, block, 0).r > 1u) return;

@@ -2,7 +2,7 @@
 //
 // AMBIENT    something dims the light from all around
 // LAMPS      lamps with a visibility of their own, at most 4
-uniform int u_layer;
+flat in int v_layer;
 uniform sampler3D u_ambient;
 uniform vec3 u_ambient_light;        // linear RGB
 uniform sampler3D u_lamp0, u_lamp1, u_lamp2, u_lamp3;
@@ -11,7 +11,7 @@ layout(location = 0) out vec4 o_world;
 layout(location = 1) out vec4 o_lamps;
 
 void main() {
-    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer);
+    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), v_layer);
     o_world = vec4(u_ambient_light, 0.0);
     o_lamps = vec4(0.0);
 #if AMBIENT

@@ -16,7 +16,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ...gpu import Device, LayerTarget, Program, Target, Variants
+from ...gpu import LAYERED, Device, LayerTarget, Program, Target, Variants
 from ..frame import Frame
 from ..marcher import Material, bind_material, material_defines
 from ..world_light import MULTIPLE, CellGrid
@@ -130,11 +130,11 @@ class FieldMaker:
     def __init__(self, device: Device) -> None:
         self.device = device
         folder = "techniques/extinction/"
-        self._cells = Variants(device, folder + "cells.frag.glsl")
+        self._cells = Variants(device, folder + "cells.frag.glsl", *LAYERED)
         self._total = Variants(device, folder + "total.frag.glsl")
         self._scan = Variants(device, folder + "scan.frag.glsl")
-        self._edges = Variants(device, folder + "edges.frag.glsl")
-        self._near = Variants(device, folder + "near.frag.glsl")
+        self._edges = Variants(device, folder + "edges.frag.glsl", *LAYERED)
+        self._near = Variants(device, folder + "near.frag.glsl", *LAYERED)
 
     def make(
         self, frame: Frame, material: Material, grid: CellGrid, densities: tuple[float, float], made: Field
@@ -253,17 +253,16 @@ class FieldMaker:
 
 
 def draw_layers(device: Device, program: Any, *textures: Any) -> Generator[float, None, None]:
-    """Draw all layers of 3D textures of one size with a program, yielding the share done."""
+    """Draw all layers of 3D textures of one size with a program of `LAYERED`, yielding the share done."""
     width, height, depth = textures[0].size
     target = LayerTarget(device, layers=len(textures), size=(width, height))
     try:
-        for layer in range(depth):
-            target.use_each(textures, layer)
-            program.set(u_layer=layer)
-            program.draw()
-            if layer % LAYERS_PER_PIECE == LAYERS_PER_PIECE - 1:
-                device.wait()
-                yield (layer + 1) / depth
-        device.wait()
+        for first in range(0, depth, LAYERS_PER_PIECE):
+            count = min(LAYERS_PER_PIECE, depth - first)
+            # Elsewhere something else may have been bound since the last piece.
+            target.use_all(textures)
+            program.draw_layers(first, count)
+            device.wait()
+            yield (first + count) / depth
     finally:
         target.release()

@@ -6,7 +6,7 @@
 //            2: what is near, times what is far
 #include "sums"
 
-uniform int u_layer;
+flat in int v_layer;
 uniform sampler3D u_near;            // how open cells are; 0 where light does not matter
 uniform vec3 u_edge_mm;              // a cell's edges in mm
 uniform float u_cell_mm;             // their mean, to which the cells' optical depths refer
@@ -209,7 +209,7 @@ float past_plane(vec3 place, vec3 middle, vec4 way, int axis, float forward, out
 #endif
 
 void main() {
-    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer);
+    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), v_layer);
 #if PART == 1
     o_light = vec2(1.0);
     // 2^3 cells; so far from where light matters that nothing is interpolated from here, it is not needed.

@@ -2,7 +2,7 @@
 //
 // RADIUS     of the ball of cells that is looked at
 // WEIGHED    1: light times openness, and openness, to be carried on; 0: light
-uniform int u_layer;
+flat in int v_layer;
 uniform sampler3D u_source;          // rgb: what dims light of each colour, optical depth per cell
 uniform sampler3D u_near;            // how open cells are; 0 where light does not matter
 uniform float u_edge_mm;             // of a cell
@@ -13,7 +13,7 @@ layout(location = 0) out vec4 o_light;
 const float PI = 3.14159265;
 
 void main() {
-    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer), last = textureSize(u_source, 0) - 1;
+    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), v_layer), last = textureSize(u_source, 0) - 1;
     float open = texelFetch(u_near, cell, 0).r;
     o_light = vec4(1.0);
 #if WEIGHED

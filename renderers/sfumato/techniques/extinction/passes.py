@@ -10,7 +10,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ...gpu import Device, Program, Variants
+from ...gpu import LAYERED, Device, Program, Variants
 from ..frame import Frame
 from ..light_cache import LightCache
 from ..marcher import (
@@ -82,8 +82,8 @@ class ExtinctionPainter:
         self.terms = TermMaker(device)
         self.baker = Baker(device)
         folder = "techniques/extinction/"
-        self._compose = Variants(device, folder + "compose.frag.glsl")
-        self._further = Variants(device, folder + "further.frag.glsl")
+        self._compose = Variants(device, folder + "compose.frag.glsl", *LAYERED)
+        self._further = Variants(device, folder + "further.frag.glsl", *LAYERED)
         store = device.store
         self.kept_fields = LightCache(None, store=store, bytes_per_texel=FIELD_BYTES)
         self.kept_ambient = LightCache(

@@ -7,12 +7,12 @@
 // LAST       1: what is drawn is light; 0: light times openness, and openness, for a next pass
 uniform sampler3D u_light;           // light times openness, and openness
 uniform sampler3D u_near;            // how open cells are; 0 where light does not matter
-uniform int u_layer;
+flat in int v_layer;
 
 layout(location = 0) out vec4 o_light;
 
 void main() {
-    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), u_layer);
+    ivec3 cell = ivec3(ivec2(gl_FragCoord.xy), v_layer);
     float open = texelFetch(u_near, cell, 0).r;
     vec3 size = vec3(textureSize(u_light, 0)), middle = (vec3(cell) + 0.5) / size, aside = 0.5 / size;
     // No neighbours where light does not matter: software renderers leave a loop early, but not a branch.

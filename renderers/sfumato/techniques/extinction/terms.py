@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...gpu import Device, Program, Variants
+from ...gpu import LAYERED, Device, Program, Variants
 from ..world_light import CellGrid
 from .field import Field, draw_layers, new_texture
 from .lamps import Emitter
@@ -133,9 +133,9 @@ class TermMaker:
     def __init__(self, device: Device) -> None:
         self.device = device
         folder = "techniques/extinction/"
-        self._ambient = Variants(device, folder + "ambient.frag.glsl")
-        self._lamp = Variants(device, folder + "lamp.frag.glsl")
-        self._spread = Variants(device, folder + "spread.frag.glsl")
+        self._ambient = Variants(device, folder + "ambient.frag.glsl", *LAYERED)
+        self._lamp = Variants(device, folder + "lamp.frag.glsl", *LAYERED)
+        self._spread = Variants(device, folder + "spread.frag.glsl", *LAYERED)
 
     def ambient(
         self,
@@ -167,8 +167,7 @@ class TermMaker:
             program = self._shells(
                 field, outer, weight[close:] * _fewer_cells(inner, outer), params.shell_strength, FAR, False
             )
-            # What is interpolated from 2^3 cells reaches two cells farther, from their middle three.
-            program.set(u_inner=tuple(inner.tolist()), u_around=field.reach + 3)
+            program.set(u_inner=tuple(inner.tolist()))
             for done in draw_layers(self.device, program, far):
                 yield 0.3 * done
             program = self._shells(field, half[:close], weight[:close], params.shell_strength, NEAR, spread)
