@@ -32,7 +32,7 @@ DATA = Path(os.environ.get("SFUMATO_DATA", Path(__file__).resolve().parents[5] /
 TRACTS = DATA / "tracts_stanford_hardi" / "hardi-lr-superiorfrontal.trk"
 SCAN = DATA / "tracts_stanford_hardi" / "sub-01_ses-01_dwi_desc-b0_dwi.nii.gz"
 CAROTID = DATA / "carotid_flow" / "carotid.vtk"
-FRAMES = 4
+FRAMES = 12
 LAMP = Light(tilt=37, aperture=22, rotation=135)
 #: Intensity of the lamp in pictures without shadows.
 WEAKER = 0.5

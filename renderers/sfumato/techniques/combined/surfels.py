@@ -39,7 +39,7 @@ MAX_SAMPLES = 24_000_000
 #: The same of tubes' axes.
 MAX_AXIS_SAMPLES = 3_000_000
 #: Tubes up to this radius, in cells, are put together from their axes.
-THIN = 0.75
+THIN = 1.0
 #: What the sums of a tube are multiplied by.
 _TUBE = 4 / (np.sqrt(2) * np.pi)
 #: Columns while summing: A, A p, A n, A n n^T (xx, yy, zz, xy, xz, yz).
