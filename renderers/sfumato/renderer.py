@@ -198,7 +198,8 @@ class Accumulation:
         self._latest: Target | None = None
         #: The sum of the same frames without shadows, where it is needed.
         self._unshadowed: Target | None = None
-        self._measured = technique_for(scene.technique).shadows and (audited or scene.shadow_floor > 0)
+        #: Whether each frame is drawn without shadows, too.
+        self.measured = technique_for(scene.technique).shadows and (audited or scene.shadow_floor > 0)
 
     @property
     def settled(self) -> bool:
@@ -214,20 +215,22 @@ class Accumulation:
             If the device fails; frames added before stay good.
         """
         number = self.frames if self.settled else 0
-        share = 0.5 if self._measured else 1.0
+        share = 0.5 if self.measured else 1.0
         self.renderer.device.make_current()
         self._make_targets()
         frame = yield from self._draw(number, False, 0.0, share)
-        if self._measured:
+        if self.measured:
             yield from self._draw(number, True, share, share)
         self.renderer.device.wait()
         self.frames, self.light = number + 1, frame.light
 
     def _make_targets(self) -> None:
+        device = self.renderer.device
         if self._latest is None:
-            device = self.renderer.device
-            self._latest, self._total = Target(device, self.size), Target(device, self.size)
-            self._unshadowed = Target(device, self.size) if self._measured else None
+            self._latest = Target(device, self.size)
+        if self._total is None:
+            self._total = Target(device, self.size)
+            self._unshadowed = Target(device, self.size) if self.measured else None
 
     def _draw(
         self, number: int, unshadowed: bool, start: float, share: float
@@ -300,6 +303,13 @@ class Accumulation:
         if self._total is None or self.frames == 0:
             raise SceneError("frames", self.frames, "draw a frame first")
         return self._total
+
+    def rest(self) -> None:
+        """Free what only drawing needs; the next frame makes it anew."""
+        self.renderer.device.make_current()
+        if self._latest is not None:
+            self._latest.release()
+        self._latest = None
 
     def release(self) -> None:
         """Free the GPU objects."""

@@ -133,7 +133,9 @@ def test_the_newest_variants_are_kept_and_what_is_held_still_draws(device: Devic
     assert drawn(device, variants.get((("NUMBER", 1),))).tolist() == [1, 1, 1, 1], "compiled anew"
 
 
-def test_one_draw_covers_layers_of_two_textures_and_tells_each_its_number(device: Device, shader: Any) -> None:
+def test_one_draw_covers_layers_of_two_textures_and_tells_each_its_number(
+    device: Device, shader: Any
+) -> None:
     stages = [(Path(sfumato.__file__).parent / file).read_text(encoding="utf-8") for file in LAYERED]
     source = shader(
         "flat in int v_layer; layout(location = 0) out float o_a; layout(location = 1) out float o_b;\n"

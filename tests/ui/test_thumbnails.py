@@ -12,6 +12,7 @@ from qtpy.QtCore import QPoint
 from qtpy.QtGui import QImage
 
 from sfumato import Scene
+from sfumato_ui import worker
 from sfumato_ui.jobs import STILL_FRAMES
 from sfumato_ui.window import MainWindow
 
@@ -56,26 +57,46 @@ def test_they_show_their_scenes(window: MainWindow, album: Album, qtbot: QtBot) 
     assert np.abs(brightness(first) - brightness(second)).mean() > 1
 
 
-def test_the_picture_is_finished_first(window: MainWindow, album: Album, hand: Any, qtbot: QtBot) -> None:
-    settled: list[bool] = []
-    window.thumbnails.ready.connect(
-        lambda *_: settled.append(window.viewport.picture is not None and window.viewport.picture.settled)
-    )
+def test_a_hand_that_moves_waits_for_none(window: MainWindow, album: Album, hand: Any, qtbot: QtBot) -> None:
+    moving: list[bool] = []
+    window.thumbnails.ready.connect(lambda *_: moving.append(window.viewport.picture.interactive))
     window.thumbnails.want("test", tilted(window.editor.scene, 10.0), SIZE)
     middle = window.viewport.rect().center()
     hand.drag(window.viewport, middle, middle + QPoint(60, 20), steps=20)
-    qtbot.waitUntil(lambda: bool(settled), timeout=90_000)
-    assert all(settled)
+    qtbot.waitUntil(lambda: bool(album.told), timeout=90_000)
+    assert not any(moving)
 
 
-def test_a_long_refinement_lets_them_in_between(window: MainWindow, album: Album, qtbot: QtBot) -> None:
-    window.driver.set_frames(STILL_FRAMES + 6)
-    window.thumbnails.want("test", tilted(window.editor.scene, 10.0), SIZE)
+def test_between_the_frames_of_a_picture_at_rest(
+    window: MainWindow, album: Album, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "IDLE_SECONDS", 0.0)
+    qtbot.waitUntil(lambda: window.viewport.picture.settled, timeout=90_000)
     frames: list[int] = []
     window.worker.thumbnail.connect(lambda *_: frames.append(window.viewport.picture.frames))
-    qtbot.waitUntil(lambda: bool(frames), timeout=90_000)
-    assert STILL_FRAMES <= frames[0] < STILL_FRAMES + 6
-    qtbot.waitUntil(lambda: window.viewport.picture.frames == STILL_FRAMES + 6, timeout=90_000)
+    window.driver.set_frames(STILL_FRAMES + 4)
+    window.editor.change_light("Move the light", tilt=20.0)
+    window.thumbnails.want("test", tilted(window.editor.scene, 10.0), SIZE)
+    qtbot.waitUntil(lambda: bool(album.told), timeout=90_000)
+    assert frames[0] < STILL_FRAMES + 4
+    qtbot.waitUntil(lambda: window.viewport.picture.frames == STILL_FRAMES + 4, timeout=90_000)
+
+
+def test_an_urgent_one_waits_for_a_frame_alone(
+    window: MainWindow, album: Album, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An exposure, for one: the picture is not to be finished and then drawn anew."""
+    monkeypatch.setattr(worker, "IDLE_SECONDS", 3600.0)
+    qtbot.waitUntil(lambda: window.viewport.picture.settled, timeout=90_000)
+    told: list[int] = []
+    window.worker.thumbnail.connect(
+        lambda request, _: told.append(window.viewport.picture.frames) if request.group == "test" else None
+    )
+    window.driver.set_frames(STILL_FRAMES + 4)
+    window.editor.change_light("Move the light", tilt=20.0)
+    window.thumbnails.want("test", tilted(window.editor.scene, 10.0), SIZE, first=True)
+    qtbot.waitUntil(lambda: bool(told), timeout=90_000)
+    assert told[0] <= 2
 
 
 def test_a_new_wish_replaces_the_old_one(window: MainWindow, album: Album, qtbot: QtBot) -> None:

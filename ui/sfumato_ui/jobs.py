@@ -73,6 +73,7 @@ class ThumbnailRequest:
 
     Without quality and frames it is drawn coarsely, as suits a small one. If ``timed``, the image says by its text
     "seconds" how long a frame takes. If ``exposed``, it has the scene's automatic exposure, and says it by "exposure".
+    One that is ``urgent`` waits for no more than the first frame of the picture.
     """
 
     group: str
@@ -83,6 +84,7 @@ class ThumbnailRequest:
     frames: int = 0
     timed: bool = False
     exposed: bool = False
+    urgent: bool = False
 
 
 def affordable_frames(most: int, drawn: int, seconds: float) -> int:

@@ -97,7 +97,7 @@ class Thumbnails(QObject):
         quality, frames : Quality, int
             Those of a small picture, if not given.
         first : bool
-            Whether they are drawn before those of other groups.
+            Whether they are drawn before those of other groups, and as soon as there is a picture.
         timed : bool
             Whether the images are to say how long a frame takes (text "seconds").
         exposed : bool
@@ -110,7 +110,7 @@ class Thumbnails(QObject):
         self._worker.want_thumbnails(
             group,
             [
-                ThumbnailRequest(group, key, scene, size, quality, frames, timed, exposed)
+                ThumbnailRequest(group, key, scene, size, quality, frames, timed, exposed, first)
                 for key, scene in open_wishes.items()
             ],
             first,

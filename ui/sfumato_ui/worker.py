@@ -3,6 +3,7 @@
 While the user interacts, a request is drawn once at drag quality, and finished even if a newer one is
 there: a hand that keeps moving must see pictures. When the scene is still, full quality follows and
 jittered frames accumulate; that work is dropped within one piece (some 50 ms) when a newer scene comes.
+What waits for a picture at rest (thumbnails, exposures) is drawn between those frames.
 """
 
 from __future__ import annotations
@@ -21,15 +22,14 @@ from sfumato.exposure import exposure_for
 from sfumato.techniques.frame import DRAG, FULL, Quality
 
 from .jobs import (
-    STILL_FRAMES,
     Picture,
     SaveRequest,
     ThumbnailRequest,
     ViewRequest,
-    affordable_frames,
     image_from,
     image_of,
 )
+from .refinement import Refinement
 from .settings import gpu_budget
 from .wording import one_line, remedy_of
 
@@ -48,6 +48,8 @@ THUMBNAIL = Quality(step=3.0, light=3.0, progressive=True)
 THUMBNAIL_FRAMES = 2
 #: A drag's frame that takes longer than this, in seconds, shows its progress.
 SLOW_SECONDS = 0.5
+#: Seconds for which a picture is to be at rest before thumbnails are drawn between its frames.
+IDLE_SECONDS = 1.0
 
 
 class RenderWorker(QObject):
@@ -82,6 +84,8 @@ class RenderWorker(QObject):
         self._thumbnails: list[ThumbnailRequest] = []
         #: Whether the still picture of the newest view is finished.
         self._settled = False
+        #: The frames of the last still picture.
+        self._kept: Refinement | None = None
         self._stopping = False
         #: The coarsest at first: how quick the device is, is not known, and the first picture must be soon.
         self._rung = len(DRAG_LADDER) - 1
@@ -145,6 +149,7 @@ class RenderWorker(QObject):
                 self._next_job()
         finally:
             if self._renderer is not None:
+                self._forget()
                 self._renderer.close()
 
     def _next_job(self) -> None:
@@ -198,6 +203,7 @@ class RenderWorker(QObject):
     def _drop_renderer(self) -> None:
         """Part with a renderer whose context is lost; the next job makes a new one."""
         lost, self._renderer = self._renderer, None
+        self._forget(lost=True)
         # Freeing what is lost may fail in ways of the driver's own; there is nothing left to save.
         with suppress(Exception):
             lost.close()
@@ -211,45 +217,89 @@ class RenderWorker(QObject):
         return self._renderer
 
     def _draw(self, renderer: Any, request: ViewRequest) -> None:
-        quality = DRAG_LADDER[self._rung] if request.interactive else STILL
-        quality = replace(quality, scale=quality.scale * self._scale)
-        audited = request.audit > 0
-        with _accumulation(renderer, request.scene, request.size, quality, audited) as accumulation:
-            most = count = 1 if request.interactive else request.frames
-            index, began = 0, time.perf_counter()
-            while index < count:
-                started = time.perf_counter()
-                for done in accumulation.add_frame():
-                    if self._stopping or self._outdated(request):
-                        return
-                    if not request.interactive or time.perf_counter() - started > SLOW_SECONDS:
-                        self.progress.emit((index + done) / count)
-                seconds = time.perf_counter() - started
-                if not (accumulation.settled or request.interactive):
-                    # Not yet one of the frames that count, but better than the last.
-                    self._drawn.emit(_picture(accumulation, request, seconds, count))
-                    began = time.perf_counter()
-                    continue
-                index += 1
-                count = affordable_frames(most, index, time.perf_counter() - began)
-                self._drawn.emit(_picture(accumulation, request, seconds, count))
-                if not request.interactive and STILL_FRAMES <= index < count:
-                    self._lend_to_thumbnail(renderer)
-                if request.interactive:
-                    self._choose_rung(seconds)
+        """Draw what the window wants: frames that are there and serve are shown at once."""
+        kept = self._kept
+        if kept is not None and kept.serves(request, self._scaled(STILL)):
+            began = time.perf_counter()
+            kept.take(request)
+            self._drawn.emit(_picture(kept.accumulation, request, time.perf_counter() - began, kept.count))
+        else:
+            self._forget()
+            if request.interactive:
+                self._draw_once(renderer, request)
+        if not request.interactive and not self._refine(renderer, request):
+            return
         self.progress.emit(1.0)
         self._settled = not request.interactive
+
+    def _scaled(self, quality: Quality) -> Quality:
+        return replace(quality, scale=quality.scale * self._scale)
+
+    def _draw_once(self, renderer: Any, request: ViewRequest) -> None:
+        """Draw a frame of a drag, coarsely."""
+        quality, audited = self._scaled(DRAG_LADDER[self._rung]), request.audit > 0
+        with _accumulation(renderer, request.scene, request.size, quality, audited) as accumulation:
+            started = time.perf_counter()
+            for done in accumulation.add_frame():
+                if self._stopping or self._outdated(request):
+                    return
+                if time.perf_counter() - started > SLOW_SECONDS:
+                    self.progress.emit(done)
+            seconds = time.perf_counter() - started
+            self._drawn.emit(_picture(accumulation, request, seconds, 1))
+            self._choose_rung(seconds)
+
+    def _refine(self, renderer: Any, request: ViewRequest) -> bool:
+        """Draw the frames of a still picture that are not there yet; False if something newer is wanted first."""
+        work = self._kept = self._kept or Refinement(renderer, request, self._scaled(STILL))
+        asked = time.perf_counter()
+        try:
+            while not work.finished:
+                started = time.perf_counter()
+                for done in work.accumulation.add_frame():
+                    if self._stopping or self._outdated(request):
+                        work.note_dropped()
+                        return False
+                    self.progress.emit((work.drawn + done) / work.count)
+                seconds = time.perf_counter() - started
+                work.note_frame(seconds)
+                self._drawn.emit(_picture(work.accumulation, request, seconds, work.count))
+                if not work.finished:
+                    self._lend_to_thumbnails(renderer, seconds, time.perf_counter() - asked)
+            work.accumulation.rest()
+        except Exception as error:
+            self._forget(lost=remedy_of(error) == "new renderer")
+            raise
+        return True
+
+    def _forget(self, lost: bool = False) -> None:
+        """Part with the frames that are kept; in a context that is lost there is nothing to free, and no way to."""
+        kept, self._kept = self._kept, None
+        if kept is not None and not lost:
+            kept.release()
 
     @property
     def _next_thumbnail(self) -> ThumbnailRequest | None:
         """The thumbnail to draw now, if there is time for one."""
         return self._thumbnails[0] if self._thumbnails and self._settled else None
 
-    def _lend_to_thumbnail(self, renderer: Any) -> None:
-        """Draw one thumbnail between two frames of a long refinement, whose picture is good by now."""
+    def _lend_to_thumbnails(self, renderer: Any, seconds: float, rested: float) -> None:
+        """Draw thumbnails between two frames, for about as long as a frame takes.
+
+        Parameters
+        ----------
+        seconds : float
+            What the last frame took.
+        rested : float
+            Seconds since the picture was asked for: unless a thumbnail is urgent, it is to be at rest for a while.
+        """
+        began = time.perf_counter()
         self._settled = True
-        thumbnail = self._next_thumbnail
-        if thumbnail is not None:
+        while not (self._stopping or self._view or self._save):
+            thumbnail = self._next_thumbnail
+            spent = time.perf_counter() - began
+            if thumbnail is None or spent > seconds or not (thumbnail.urgent or rested > IDLE_SECONDS):
+                break
             self._draw_thumbnail(renderer, thumbnail)
 
     def _draw_thumbnail(self, renderer: Any, request: ThumbnailRequest) -> None:
@@ -324,6 +374,7 @@ class RenderWorker(QObject):
             self._rung = max(self._rung - 1, 0)
 
     def _write(self, renderer: Any, request: SaveRequest) -> None:
+        self._forget()  # a large picture needs the room
         with closing(request.work(renderer, _ViewsFirst(self, renderer))) as pieces:
             for done in pieces:
                 if self._stopping or self._cancel_save:
@@ -345,6 +396,7 @@ class RenderWorker(QObject):
             return
         try:
             self._draw(renderer, view)
+            self._forget()
         except GpuError as error:
             if error.remedy == "new renderer":
                 raise

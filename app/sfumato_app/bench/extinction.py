@@ -66,7 +66,9 @@ class Neighbourhood:
         self._texture = new_texture(self._device, self._grid.size, 4, "nu2")
         self._terms = TermMaker(self._device)
         folder = "techniques/extinction/"
-        self._looking = Variants(self._device, folder + "neighbourhood.frag.glsl", *LAYERED) if explicit else None
+        self._looking = (
+            Variants(self._device, folder + "neighbourhood.frag.glsl", *LAYERED) if explicit else None
+        )
 
     def settle(self) -> None:
         """Draw once: textures are in memory and shaders at hand, as those of all other rows."""
