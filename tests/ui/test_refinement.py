@@ -55,6 +55,7 @@ def test_the_frames_that_are_there_are_shown_in_another_way(
         hand.wait_for_picture()
         assert np.abs(hand.pixels() - before).mean() > 0.5, changes
     assert count.frames == 0
+    assert min(picture.seconds for picture in pictures) > 0.01, "exports are judged by what a frame takes"
     assert {picture.frames for picture in pictures} == {STILL_FRAMES}, "no coarse picture in between"
     width, height = window.viewport.pixel_size
     anew = sfumato.render(window.editor.scene.with_(frames=STILL_FRAMES), (width, height)).astype(int)

@@ -27,12 +27,14 @@ class Refinement:
         The frames so far.
     count : int
         How many it will be, as far as can be said by now.
+    seconds : float
+        What the last frame took.
     """
 
     def __init__(self, renderer: Any, request: ViewRequest, quality: Quality) -> None:
         self._key = _key_of(request, quality)
         self._most = self.count = request.frames
-        self._drawn, self._spent = 0, 0.0
+        self._drawn, self._spent, self.seconds = 0, 0.0, 0.0
         self._whole = True
         self._renderer = renderer
         self.accumulation = renderer.begin(
@@ -62,6 +64,7 @@ class Refinement:
 
     def note_frame(self, seconds: float) -> None:
         """Count a frame that was drawn."""
+        self.seconds = seconds
         if self.accumulation.settled:
             self._drawn += 1
             self._spent += seconds

@@ -220,13 +220,12 @@ class RenderWorker(QObject):
         """Draw what the window wants: frames that are there and serve are shown at once."""
         kept = self._kept
         if kept is not None and kept.serves(request, self._scaled(STILL)):
-            began = time.perf_counter()
             kept.take(request)
-            self._drawn.emit(_picture(kept.accumulation, request, time.perf_counter() - began, kept.count))
+            self._drawn.emit(_picture(kept.accumulation, request, kept.seconds, kept.count))
         else:
             self._forget()
-            if request.interactive:
-                self._draw_once(renderer, request)
+            if request.interactive and not self._draw_once(renderer, request):
+                return
         if not request.interactive and not self._refine(renderer, request):
             return
         self.progress.emit(1.0)
@@ -235,19 +234,20 @@ class RenderWorker(QObject):
     def _scaled(self, quality: Quality) -> Quality:
         return replace(quality, scale=quality.scale * self._scale)
 
-    def _draw_once(self, renderer: Any, request: ViewRequest) -> None:
-        """Draw a frame of a drag, coarsely."""
+    def _draw_once(self, renderer: Any, request: ViewRequest) -> bool:
+        """Draw a frame of a drag, coarsely; False if it is given up for other data or another technique."""
         quality, audited = self._scaled(DRAG_LADDER[self._rung]), request.audit > 0
         with _accumulation(renderer, request.scene, request.size, quality, audited) as accumulation:
             started = time.perf_counter()
             for done in accumulation.add_frame():
                 if self._stopping or self._outdated(request):
-                    return
+                    return False
                 if time.perf_counter() - started > SLOW_SECONDS:
                     self.progress.emit(done)
             seconds = time.perf_counter() - started
             self._drawn.emit(_picture(accumulation, request, seconds, 1))
             self._choose_rung(seconds)
+        return True
 
     def _refine(self, renderer: Any, request: ViewRequest) -> bool:
         """Draw the frames of a still picture that are not there yet; False if something newer is wanted first."""
