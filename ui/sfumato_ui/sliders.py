@@ -313,6 +313,14 @@ class LabelledSlider(QWidget):
         QWidget.setTabOrder(self.number, self.slider)
         self.label.setBuddy(self.slider)
 
+    def add_button(self, button: QWidget) -> None:
+        """Put a button that sets the number beside it."""
+        grid = self.layout()
+        assert isinstance(grid, QGridLayout)
+        grid.removeWidget(self.slider)
+        grid.addWidget(button, 0, 3)
+        grid.addWidget(self.slider, 1, 0, 1, 4)  # after the button, in the order of Tab, too
+
     def _connect(self) -> None:
         self.slider.moved.connect(self.edited)
         self.slider.sliderPressed.connect(self.drag_started)

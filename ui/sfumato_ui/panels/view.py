@@ -33,7 +33,6 @@ from ..orientation import cube_wanted
 from ..quality import QUALITIES, chosen_quality, remember_quality
 from ..section import Section
 from ..settings import settings
-from ..sliders import LabelledSlider
 from ..theme import THEMES, current_theme
 from .page import Page
 
@@ -75,6 +74,7 @@ class ViewPage(Page):
         self.turntable.setAccessibleName("Turntable")
         self.turntable.setCheckable(True)
         self.turntable.setProperty("compact", True)
+        self.turntable.setMinimumWidth(44)  # wider than its one short word
         explain(
             self.turntable,
             "Let the subject turn, once around in 12 s; the next press or key ends it",
@@ -127,7 +127,8 @@ class ViewPage(Page):
         self.add(self.crop)
         self.add(self.shapes)
         self.add_heading("Picture")
-        self.add(_beside(self.exposure, self.auto))
+        self.exposure.add_button(self.auto)
+        self.add(self.exposure)
         self.add(self._background_row())
         self.add(self.more)
         self.more.add(self.automatic)
@@ -301,15 +302,4 @@ def _side_by_side(*boxes: QWidget) -> QWidget:
     layout.setSpacing(8)
     for box in boxes:
         layout.addWidget(box, 1)
-    return row
-
-
-def _beside(slider: LabelledSlider, button: QPushButton) -> QWidget:
-    """Return a slider and a button that sets it."""
-    row = QWidget()
-    layout = QHBoxLayout(row)
-    layout.setContentsMargins(0, 0, 0, 0)
-    layout.setSpacing(8)
-    layout.addWidget(slider, 1)
-    layout.addWidget(button, 0, Qt.AlignmentFlag.AlignTop)
     return row
