@@ -167,6 +167,7 @@ def test_one_figure(run: Callable[..., object], tmp_path: Path) -> None:
 
 @pytest.mark.gpu
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_whole_page(run: Callable[..., object], tmp_path: Path) -> None:
     outcome = run("gallery", "-o", "docs/gallery", "--scale", "0.12", "--frames", "1")
     assert outcome.status == 0, outcome.err  # type: ignore[attr-defined]
