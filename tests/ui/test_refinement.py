@@ -38,8 +38,8 @@ def count(window: MainWindow, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> 
     return counted
 
 
-def test_the_frames_that_are_there_are_shown_in_another_way(
-    window: MainWindow, hand: Any, count: Count
+def test_the_frames_that_are_there_are_shown_in_another_way_and_added_to(
+    window: MainWindow, hand: Any, qtbot: QtBot, count: Count
 ) -> None:
     pictures: list[Picture] = []
     window.worker.picture.connect(pictures.append)
@@ -61,19 +61,16 @@ def test_the_frames_that_are_there_are_shown_in_another_way(
     anew = sfumato.render(window.editor.scene.with_(frames=STILL_FRAMES), (width, height)).astype(int)
     shown = hand.pixels()[..., 2::-1]  # blue comes first
     assert np.abs(shown - anew[..., :3]).max() <= 1
+    count.frames = 0
+    window.driver.set_frames(STILL_FRAMES + 2)
+    qtbot.waitUntil(lambda: window.viewport.picture.frames == STILL_FRAMES + 2, timeout=90_000)
+    assert count.frames == 2
     window.editor.change_light("Move the light", tilt=20.0)
     hand.wait_for_picture()
-    assert count.frames > 0, "what light depends on is drawn anew"
+    assert count.frames > 2, "what light depends on is drawn anew"
 
 
-def test_more_frames_are_added_to_those_that_are_there(
-    window: MainWindow, qtbot: QtBot, count: Count
-) -> None:
-    window.driver.set_frames(STILL_FRAMES + 5)
-    qtbot.waitUntil(lambda: window.viewport.picture.frames == STILL_FRAMES + 5, timeout=90_000)
-    assert count.frames == 5
-
-
+@pytest.mark.slow
 def test_an_exposure_amid_the_refinement_keeps_its_frames(
     window: MainWindow, qtbot: QtBot, count: Count
 ) -> None:
@@ -87,6 +84,7 @@ def test_an_exposure_amid_the_refinement_keeps_its_frames(
     assert window.viewport.picture.scene.exposure == 1.0
 
 
+@pytest.mark.slow
 def test_a_floor_of_shadows_moves_on_the_frames_that_are_there(
     window: MainWindow, hand: Any, qtbot: QtBot, count: Count
 ) -> None:

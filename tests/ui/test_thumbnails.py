@@ -71,7 +71,6 @@ def test_between_the_frames_of_a_picture_at_rest(
     window: MainWindow, album: Album, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "IDLE_SECONDS", 0.0)
-    qtbot.waitUntil(lambda: window.viewport.picture.settled, timeout=90_000)
     frames: list[int] = []
     window.worker.thumbnail.connect(lambda *_: frames.append(window.viewport.picture.frames))
     window.driver.set_frames(STILL_FRAMES + 4)
@@ -79,7 +78,6 @@ def test_between_the_frames_of_a_picture_at_rest(
     window.thumbnails.want("test", tilted(window.editor.scene, 10.0), SIZE)
     qtbot.waitUntil(lambda: bool(album.told), timeout=90_000)
     assert frames[0] < STILL_FRAMES + 4
-    qtbot.waitUntil(lambda: window.viewport.picture.frames == STILL_FRAMES + 4, timeout=90_000)
 
 
 def test_an_urgent_one_waits_for_a_frame_alone(
@@ -87,7 +85,6 @@ def test_an_urgent_one_waits_for_a_frame_alone(
 ) -> None:
     """An exposure, for one: the picture is not to be finished and then drawn anew."""
     monkeypatch.setattr(worker, "IDLE_SECONDS", 3600.0)
-    qtbot.waitUntil(lambda: window.viewport.picture.settled, timeout=90_000)
     told: list[int] = []
     window.worker.thumbnail.connect(
         lambda request, _: told.append(window.viewport.picture.frames) if request.group == "test" else None
