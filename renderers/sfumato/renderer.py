@@ -21,6 +21,9 @@ __all__ = ["DRAG", "FULL", "Accumulation", "Quality", "Renderer", "render"]
 
 #: Largest side of a picture in pixels that is drawn in one go.
 MAX_SIDE = 16384
+#: Fields of a scene on which no frame depends: what `Renderer.resolve` makes of frames, their number, kept views.
+#: (Where there is a shadow floor, each frame is drawn without shadows, too: `Accumulation.measured`.)
+AFTERWARDS = ("background", "exposure", "white_balance", "tone_curve", "shadow_floor", "frames", "bookmarks")
 
 
 class Renderer:

@@ -78,6 +78,7 @@ def test_between_the_frames_of_a_picture_at_rest(
     window.thumbnails.want("test", tilted(window.editor.scene, 10.0), SIZE)
     qtbot.waitUntil(lambda: bool(album.told), timeout=90_000)
     assert frames[0] < STILL_FRAMES + 4
+    qtbot.waitUntil(lambda: window.viewport.picture.frames == STILL_FRAMES + 4, timeout=90_000)
 
 
 def test_an_urgent_one_waits_for_a_frame_alone(

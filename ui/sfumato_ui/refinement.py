@@ -10,12 +10,10 @@ import functools
 from typing import Any
 
 from sfumato import Scene
+from sfumato.renderer import AFTERWARDS
 from sfumato.techniques.frame import Quality
 
 from .jobs import ViewRequest, affordable_frames
-
-#: Fields of a scene on which no frame depends.
-AFTERWARDS = ("background", "exposure", "white_balance", "tone_curve", "shadow_floor", "frames", "bookmarks")
 
 
 class Refinement:
@@ -25,16 +23,14 @@ class Refinement:
     ----------
     accumulation : Accumulation
         The frames so far.
-    count : int
-        How many it will be, as far as can be said by now.
     seconds : float
         What the last frame took.
     """
 
     def __init__(self, renderer: Any, request: ViewRequest, quality: Quality) -> None:
         self._key = _key_of(request, quality)
-        self._most = self.count = request.frames
-        self._drawn, self._spent, self.seconds = 0, 0.0, 0.0
+        self._most = request.frames
+        self._spent = self.seconds = 0.0
         self._whole = True
         self._renderer = renderer
         self.accumulation = renderer.begin(
@@ -48,35 +44,32 @@ class Refinement:
     def take(self, request: ViewRequest) -> None:
         """Show the frames as a request wants it."""
         self.accumulation.scene = request.scene
-        if not request.interactive and request.frames != self._most:
-            self._most = self.count = request.frames
-            self._afford()
+        self._most = request.frames
 
     @property
     def drawn(self) -> int:
         """Frames so far that count: none before the light has settled."""
-        return self._drawn
+        return self.accumulation.frames if self.accumulation.settled else 0
+
+    @property
+    def count(self) -> int:
+        """How many it will be, as far as can be said by now."""
+        return affordable_frames(self._most, self.drawn, self._spent) if self.drawn else self._most
 
     @property
     def finished(self) -> bool:
         """Whether all frames are drawn."""
-        return self._drawn >= self.count
+        return self.drawn >= self.count
 
     def note_frame(self, seconds: float) -> None:
         """Count a frame that was drawn."""
         self.seconds = seconds
         if self.accumulation.settled:
-            self._drawn += 1
             self._spent += seconds
-            self._afford()
 
     def note_dropped(self) -> None:
         """Note that a frame was given up: where shadows are measured, only half of it may be there."""
         self._whole = not self.accumulation.measured
-
-    def _afford(self) -> None:
-        if self._drawn:
-            self.count = affordable_frames(self._most, self._drawn, self._spent)
 
     def release(self) -> None:
         """Free what is on the GPU."""
