@@ -25,7 +25,7 @@ DEPTH_LIMIT = 2.0
 #: Voxels by which light is carried on into the matter of a surface, and the most passes that it may take.
 SPREAD, MOST_SPREADS = 2.0, 4
 #: Optical depth of a hundredth of the volume's longest side from which matter counts as dense.
-DENSE = 1.0
+DENSE = 0.3
 
 
 #: Half size in cells from which a shell counts as far.
