@@ -220,3 +220,20 @@ def test_a_scene_whose_volume_is_gone_says_which(
     )
     window.open(str(tmp_path / "orphan.sfumato"))
     assert "lost.nii" in error_of(window, qtbot)
+
+
+def test_an_error_that_comes_again_leaves_its_button_under_the_mouse(
+    window: MainWindow, qtbot: QtBot
+) -> None:
+    pressed: list[str] = []
+    window.messages.show_error("Too large.", {"Use less": lambda: pressed.append("first")})
+    button = next(b for b in window.messages.findChildren(QPushButton) if b.text() == "Use less")
+    qtbot.mousePress(button, LEFT)
+    window.messages.show_error("Too large still.", {"Use less": lambda: pressed.append("second")})
+    qtbot.mouseRelease(button, LEFT)
+    assert pressed == ["second"]
+    assert window.messages.kind == ""
+    window.messages.show_error("Too large.", {"Use less": pressed.clear})
+    window.messages.show_error("Wrong.", {"Use another": pressed.clear})
+    click(window, qtbot, "Use another")  # at once
+    assert not pressed

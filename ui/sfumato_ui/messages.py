@@ -52,6 +52,7 @@ class MessageBar(QFrame):
         self._bar.setAccessibleName("Progress")
         self._cancel = QPushButton("Cancel")
         self._answers: list[QPushButton] = []
+        self._acts: dict[str, Callable[[], object]] = {}
         self._close = QToolButton()
         self._close.setAccessibleName("Close the message")
         self._cancel.clicked.connect(self.cancelled)
@@ -155,21 +156,26 @@ class MessageBar(QFrame):
 
     def _offer(self, answers: Mapping[str, Callable[[], object]]) -> None:
         """Replace the buttons; each one closes the bar and acts."""
+        self._acts = dict(answers)
+        if [button.text() for button in self._answers] == list(answers):
+            return  # a message that comes again must not take a button from under the mouse
         for button in self._answers:
             button.hide()
             self._row.removeWidget(button)
             button.deleteLater()
         self._answers = []
-        for text, act in answers.items():
+        for text in answers:
             button = QPushButton(text)
-            button.clicked.connect(lambda _=False, act=act: self._answer(act))
+            button.clicked.connect(lambda _=False, text=text: self._answer(text))
             self._row.insertWidget(self._row.count() - 1, button, 0, Qt.AlignmentFlag.AlignVCenter)
+            button.show()  # in a bar that is seen, the layout would show it only after the next event
             self._answers.append(button)
         # Tab goes from the picture to the answers.
         for before, after in pairwise([self._over, *self._answers, self._close]):
             QWidget.setTabOrder(before, after)
 
-    def _answer(self, act: Callable[[], object]) -> None:
+    def _answer(self, text: str) -> None:
+        act = self._acts[text]
         self.clear(self.kind)
         act()
 
