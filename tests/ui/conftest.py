@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import shutil
 import subprocess
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from qtpy.QtGui import QMouseEvent, QWheelEvent
 from qtpy.QtWidgets import QApplication, QWidget
 
 from sfumato import Document, Scene, TransferFunction, Volume, VolumeInfo
+from sfumato.renderer import Accumulation
 from sfumato_ui.sliders import Slider
 from sfumato_ui.theme import apply_theme
 from sfumato_ui.window import MainWindow
@@ -24,8 +27,15 @@ from sfumato_ui.window import MainWindow
 LEFT = Qt.MouseButton.LeftButton
 
 
+#: Least time in milliseconds for which a test waits for what is to come: a machine with other work may stand still for
+#: seconds, and the tests' own timeouts end what hangs.
+PATIENCE = 60_000
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """Give the second of two processes a screen of its own: on one screen they would take each other's focus."""
+    """Wait with patience, and on a screen of one's own: on one screen two processes would take each other's focus."""
+    for name in ("waitUntil", "waitSignal"):
+        setattr(QtBot, name, _patient(getattr(QtBot, name)))
     second = os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0"
     if second and os.environ.get("DISPLAY") and shutil.which("Xvfb"):
         command = ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"]
@@ -34,6 +44,14 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["DISPLAY"] = f":{screen.stdout.readline().strip()}"
         os.environ.pop("XAUTHORITY", None)
         config.add_cleanup(lambda: _end(screen))
+
+
+def _patient(wait: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(wait)
+    def patient(*args: Any, timeout: int = 0, **options: Any) -> Any:
+        return wait(*args, timeout=max(timeout, PATIENCE), **options)
+
+    return patient
 
 
 def _end(screen: subprocess.Popen[str]) -> None:
@@ -214,6 +232,28 @@ def hand(window: MainWindow, qtbot: QtBot) -> Hand:
 def hand_of(qtbot: QtBot) -> Callable[[MainWindow], Hand]:
     """Return a maker of users, for windows of a test's own."""
     return lambda window: Hand(window, qtbot)
+
+
+class Count:
+    """How many frames are drawn at the size of the window."""
+
+    def __init__(self, window: MainWindow) -> None:
+        self.window, self.frames = window, 0
+
+
+@pytest.fixture
+def count(window: MainWindow, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> Count:
+    """Count the frames of a settled picture's window from now on; thumbnails are not its frames."""
+    qtbot.waitUntil(lambda: window.viewport.picture.settled, timeout=90_000)
+    counted, original = Count(window), Accumulation.add_frame
+
+    def add_frame(self: Accumulation) -> Iterator[float]:
+        wide = self.size[0] / self.quality.scale >= 0.9 * window.viewport.pixel_size[0]
+        counted.frames += wide
+        return original(self)
+
+    monkeypatch.setattr(Accumulation, "add_frame", add_frame)
+    return counted
 
 
 @pytest.fixture

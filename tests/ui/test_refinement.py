@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,35 +10,12 @@ from pytestqt.qtbot import QtBot
 from qtpy.QtCore import QPoint
 
 import sfumato
-from sfumato.renderer import Accumulation
 from sfumato_ui.jobs import STILL_FRAMES, Picture
 from sfumato_ui.window import MainWindow
 
 
-class Count:
-    """How many frames are drawn at the size of the window."""
-
-    def __init__(self, window: MainWindow) -> None:
-        self.window, self.frames = window, 0
-
-
-@pytest.fixture
-def count(window: MainWindow, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> Count:
-    """Count the frames of a settled picture's window from now on; thumbnails are not its frames."""
-    qtbot.waitUntil(lambda: window.viewport.picture.settled, timeout=90_000)
-    counted, original = Count(window), Accumulation.add_frame
-
-    def add_frame(self: Accumulation) -> Iterator[float]:
-        wide = self.size[0] / self.quality.scale >= 0.9 * window.viewport.pixel_size[0]
-        counted.frames += wide
-        return original(self)
-
-    monkeypatch.setattr(Accumulation, "add_frame", add_frame)
-    return counted
-
-
 def test_the_frames_that_are_there_are_shown_in_another_way_and_added_to(
-    window: MainWindow, hand: Any, qtbot: QtBot, count: Count
+    window: MainWindow, hand: Any, qtbot: QtBot, count: Any
 ) -> None:
     pictures: list[Picture] = []
     window.worker.picture.connect(pictures.append)
@@ -72,7 +48,7 @@ def test_the_frames_that_are_there_are_shown_in_another_way_and_added_to(
 
 @pytest.mark.slow
 def test_an_exposure_amid_the_refinement_keeps_its_frames(
-    window: MainWindow, qtbot: QtBot, count: Count
+    window: MainWindow, qtbot: QtBot, count: Any
 ) -> None:
     window.driver.set_frames(STILL_FRAMES + 8)
     qtbot.waitUntil(lambda: window.viewport.picture.frames > STILL_FRAMES + 1, timeout=90_000)
@@ -86,7 +62,7 @@ def test_an_exposure_amid_the_refinement_keeps_its_frames(
 
 @pytest.mark.slow
 def test_a_floor_of_shadows_moves_on_the_frames_that_are_there(
-    window: MainWindow, hand: Any, qtbot: QtBot, count: Count
+    window: MainWindow, hand: Any, qtbot: QtBot, count: Any
 ) -> None:
     window.editor.change("Floor", shadow_floor=0.2)
     qtbot.waitUntil(lambda: window.viewport.picture.settled and count.frames > 0, timeout=90_000)

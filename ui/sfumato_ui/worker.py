@@ -31,6 +31,7 @@ from .jobs import (
 )
 from .refinement import Refinement
 from .settings import gpu_budget
+from .stills import Stills
 from .wording import one_line, remedy_of
 
 #: Qualities while the user drags, finest first; the worker keeps to the finest that is quick enough.
@@ -86,6 +87,9 @@ class RenderWorker(QObject):
         self._settled = False
         #: The frames of the last still picture.
         self._kept: Refinement | None = None
+        self._stills = Stills()
+        #: The last picture that the window was told of.
+        self._shown: Picture | None = None
         self._stopping = False
         #: The coarsest at first: how quick the device is, is not known, and the first picture must be soon.
         self._rung = len(DRAG_LADDER) - 1
@@ -217,19 +221,27 @@ class RenderWorker(QObject):
         return self._renderer
 
     def _draw(self, renderer: Any, request: ViewRequest) -> None:
-        """Draw what the window wants: frames that are there and serve are shown at once."""
-        kept = self._kept
+        """Draw what the window wants: what is there and serves is shown at once."""
+        kept, still = self._kept, self._stills.find(request, self._scaled(STILL))
         if kept is not None and kept.serves(request, self._scaled(STILL)):
             kept.take(request)
-            self._drawn.emit(_picture(kept.accumulation, request, kept.seconds, kept.count))
+            self._show(_picture(kept.accumulation, request, kept.seconds, kept.count))
+        elif still is not None:
+            self._show(still)
         else:
             self._forget()
             if request.interactive and not self._draw_once(renderer, request):
                 return
-        if not request.interactive and not self._refine(renderer, request):
-            return
+        if not request.interactive and still is None:
+            if not self._refine(renderer, request):
+                return
+            self._stills.keep(request, self._scaled(STILL), self._shown)
         self.progress.emit(1.0)
         self._settled = not request.interactive
+
+    def _show(self, picture: Picture) -> None:
+        self._shown = picture
+        self._drawn.emit(picture)
 
     def _scaled(self, quality: Quality) -> Quality:
         return replace(quality, scale=quality.scale * self._scale)
@@ -245,7 +257,7 @@ class RenderWorker(QObject):
                 if time.perf_counter() - started > SLOW_SECONDS:
                     self.progress.emit(done)
             seconds = time.perf_counter() - started
-            self._drawn.emit(_picture(accumulation, request, seconds, 1))
+            self._show(_picture(accumulation, request, seconds, 1))
             self._choose_rung(seconds)
         return True
 
@@ -263,7 +275,7 @@ class RenderWorker(QObject):
                     self.progress.emit((work.drawn + done) / work.count)
                 seconds = time.perf_counter() - started
                 work.note_frame(seconds)
-                self._drawn.emit(_picture(work.accumulation, request, seconds, work.count))
+                self._show(_picture(work.accumulation, request, seconds, work.count))
                 if not work.finished:
                     self._lend_to_thumbnails(renderer, seconds, time.perf_counter() - asked)
             work.accumulation.rest()
