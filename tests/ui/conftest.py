@@ -20,6 +20,7 @@ from qtpy.QtWidgets import QApplication, QWidget
 
 from sfumato import Document, Scene, TransferFunction, Volume, VolumeInfo
 from sfumato.renderer import Accumulation
+from sfumato_ui.quality import DRAFT, remember_quality
 from sfumato_ui.sliders import Slider
 from sfumato_ui.theme import apply_theme
 from sfumato_ui.window import MainWindow
@@ -73,8 +74,11 @@ def solid() -> TransferFunction:
 
 
 @pytest.fixture(autouse=True)
-def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
+    """Keep settings apart, and stop at two frames: six more behind each test's back took an eighth of the time."""
     monkeypatch.setenv("SFUMATO_SETTINGS", str(tmp_path))
+    if request.node.get_closest_marker("normal_quality") is None:
+        remember_quality(DRAFT)
 
 
 @pytest.fixture(autouse=True)

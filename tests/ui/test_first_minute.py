@@ -20,6 +20,7 @@ def in_order(minute: Minute) -> bool:
     return minute.progress < minute.loaded < minute.first < minute.settled
 
 
+@pytest.mark.normal_quality
 def test_a_dropped_volume_is_seen(
     qapp: QApplication, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -30,7 +30,7 @@ MEAN, WORST = 1.5, 70.0
 
 Check = Callable[[str, QWidget], None]
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.normal_quality]
 
 
 def pixels(widget: QWidget) -> np.ndarray:

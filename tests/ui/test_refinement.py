@@ -14,6 +14,7 @@ from sfumato_ui.jobs import STILL_FRAMES, Picture
 from sfumato_ui.window import MainWindow
 
 
+@pytest.mark.normal_quality
 def test_the_frames_that_are_there_are_shown_in_another_way_and_added_to(
     window: MainWindow, hand: Any, qtbot: QtBot, count: Any
 ) -> None:
@@ -47,6 +48,7 @@ def test_the_frames_that_are_there_are_shown_in_another_way_and_added_to(
 
 
 @pytest.mark.slow
+@pytest.mark.normal_quality
 def test_an_exposure_amid_the_refinement_keeps_its_frames(
     window: MainWindow, qtbot: QtBot, count: Any
 ) -> None:
@@ -61,6 +63,7 @@ def test_an_exposure_amid_the_refinement_keeps_its_frames(
 
 
 @pytest.mark.slow
+@pytest.mark.normal_quality
 def test_a_floor_of_shadows_moves_on_the_frames_that_are_there(
     window: MainWindow, hand: Any, qtbot: QtBot, count: Any
 ) -> None:

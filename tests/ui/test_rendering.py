@@ -25,6 +25,7 @@ def noisy(n: int) -> Volume:
     return Volume(np.random.default_rng(1).integers(0, 255, (n, n, n)).astype(np.uint8))
 
 
+@pytest.mark.normal_quality
 def test_a_still_picture_is_refined_to_the_end(window: MainWindow, qtbot: QtBot) -> None:
     qtbot.waitUntil(lambda: window.viewport.picture.settled, timeout=120_000)
     assert window.viewport.picture.frames == STILL_FRAMES
@@ -53,6 +54,7 @@ def longest_gap(qtbot: QtBot, milliseconds: int) -> float:
 
 
 @pytest.mark.measured
+@pytest.mark.normal_quality
 def test_the_event_loop_never_stalls_during_a_heavy_render(make_window: Any, qtbot: QtBot) -> None:
     window = make_window(size=(1200, 860))
     # What the machine itself does to an idle loop, with other programs beside us, is not ours.
@@ -81,6 +83,7 @@ def test_pictures_keep_coming_while_the_hand_moves(window: MainWindow, hand: Any
 
 
 @pytest.mark.measured
+@pytest.mark.normal_quality
 def test_closing_while_rendering_is_quick(make_window: Any, qtbot: QtBot) -> None:
     window = make_window(Scene(volume=noisy(96), step=0.25))
     qtbot.waitUntil(lambda: window.viewport.picture is not None, timeout=120_000)

@@ -258,6 +258,7 @@ def _check_history(window: MainWindow) -> None:
     assert document.scene == end
 
 
+@pytest.mark.normal_quality
 @pytest.mark.parametrize(
     ("count", "seed"),
     [

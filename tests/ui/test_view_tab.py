@@ -40,6 +40,7 @@ def test_letters_name_the_side_that_lies_there(azimuth: float, elevation: float,
         )
 
 
+@pytest.mark.normal_quality
 def test_quality_is_kept_and_refines_as_far(
     window: MainWindow, hand: Any, qtbot: QtBot, make_window: Any
 ) -> None:

@@ -18,8 +18,9 @@ class PictureQuality:
     frames: int
 
 
+DRAFT = PictureQuality("Draft", 2)
 NORMAL = PictureQuality("Normal", STILL_FRAMES)
-QUALITIES = (PictureQuality("Draft", 2), NORMAL, PictureQuality("Fine", 32))
+QUALITIES = (DRAFT, NORMAL, PictureQuality("Fine", 32))
 
 
 def chosen_quality() -> PictureQuality:
