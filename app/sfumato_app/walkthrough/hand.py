@@ -85,6 +85,7 @@ class Hand:
             picture is not None
             and picture.scene == self.window.driver.shown_scene
             and picture.size == self.window.viewport.pixel_size
+            and (picture.audit is not None) == self.window.light_page.audit.on.isChecked()
         )
 
     def _settled(self) -> bool:
