@@ -409,7 +409,7 @@ def before_wall() -> Callable[..., Scene]:
     return scene
 
 
-@pytest.mark.parametrize(("cones", "most"), [(1, 0.27), (16, 0.095)])
+@pytest.mark.parametrize(("cones", "most"), [(1, 0.23), (16, 0.095)])
 def test_the_shadow_of_a_lamp_is_that_of_the_ray_traced_cone(
     before_wall: Callable[..., Scene], cones: int, most: float
 ) -> None:
@@ -431,7 +431,7 @@ def test_the_shadow_of_a_lamp_is_that_of_the_ray_traced_cone(
     wall = np.broadcast_to(beside, truth.shape)
     assert np.ptp(truth[wall]) > 0.4
     error = float(np.sqrt(((got - truth)[wall] ** 2).mean()))
-    # Measured: 0.24 by the paper's single cone, 0.08 by sixteen; both too dark between the bars (docs/extinction.md).
+    # Measured: 0.20 by the paper's single cone, 0.08 by sixteen; both too dark between the bars (docs/extinction.md).
     assert error < most, error
 
 

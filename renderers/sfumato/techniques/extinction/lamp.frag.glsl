@@ -53,8 +53,9 @@ float light_of(Passing p) { return p.background * (1.0 - p.share + p.share * p.w
 // Through a section whose mean matter is known, so many cells long, in so many layers.
 void pass(inout Passing p, vec4 mean, float cells, float layers) {
     // What fills one layer of several may be a wall across the way. Then it has as much surface: two sides in a long
-    // section, of which a short one may see but one; or it goes on from the section before.
-    float sides = mix(1.5, 0.6, clamp((layers - 2.0) / 4.0, 0.0, 1.0)) * mean.a * layers;
+    // section (less than half of all the surface there, as a wall may lie aslant), of which a short one may see but one;
+    // or it goes on from the section before.
+    float sides = mix(1.5, 0.4, clamp((layers - 2.0) / 4.0, 0.0, 1.0)) * mean.a * layers;
     float share = clamp(max(mean.b, min(mean.b * layers, max(sides, p.share))), 0.0, 1.0);
     if (share < p.share) {
         // What was dimmed and is no longer in the way is beside from now on.
