@@ -33,6 +33,7 @@ def test_before_and_after_undo_and_redo_draw_nothing_anew(
     window: MainWindow, hand: Any, qtbot: QtBot, count: Any
 ) -> None:
     lit = settle(window, qtbot)
+    frames = window.viewport.picture.frames
     window.viewport.setFocus()
     qtbot.keyPress(window.viewport, Qt.Key.Key_B)
     unlit = settle(window, qtbot)
@@ -52,6 +53,18 @@ def test_before_and_after_undo_and_redo_draw_nothing_anew(
     hand.press(Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier)
     assert np.array_equal(settle(window, qtbot), moved)
     assert count.frames == 0
+    window.editor.undo()
+    settle(window, qtbot)
+    window.editor.change("Brighter", exposure=1.0)
+
+    def begun() -> bool:
+        picture = window.viewport.picture
+        return bool(picture.scene.exposure == 1.0 and not picture.interactive)
+
+    qtbot.waitUntil(begun, timeout=90_000)
+    window.editor.undo()  # amid the frames of the same light, fewer than there were
+    assert np.array_equal(settle(window, qtbot), lit)
+    assert window.viewport.picture.frames == frames
 
 
 # -- how many, and for how long ---------------------------------------------------------------------

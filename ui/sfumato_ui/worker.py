@@ -221,23 +221,31 @@ class RenderWorker(QObject):
         return self._renderer
 
     def _draw(self, renderer: Any, request: ViewRequest) -> None:
-        """Draw what the window wants: what is there and serves is shown at once."""
-        kept, still = self._kept, self._stills.find(request, self._scaled(STILL))
+        """Draw what the window wants; a picture that was finished a moment ago is shown at once."""
+        still = self._stills.find(request, self._scaled(STILL))
+        if still is not None:
+            self._show(still)
+        elif not self._draw_frames(renderer, request):
+            return
+        self.progress.emit(1.0)
+        self._settled = not request.interactive
+
+    def _draw_frames(self, renderer: Any, request: ViewRequest) -> bool:
+        """Draw what is not there yet, frames that are there and serve first; False if it is given up."""
+        kept = self._kept
         if kept is not None and kept.serves(request, self._scaled(STILL)):
             kept.take(request)
             self._show(_picture(kept.accumulation, request, kept.seconds, kept.count))
-        elif still is not None:
-            self._show(still)
         else:
             self._forget()
             if request.interactive and not self._draw_once(renderer, request):
-                return
-        if not request.interactive and still is None:
-            if not self._refine(renderer, request):
-                return
-            self._stills.keep(request, self._scaled(STILL), self._shown)
-        self.progress.emit(1.0)
-        self._settled = not request.interactive
+                return False
+        if request.interactive:
+            return True
+        if not self._refine(renderer, request):
+            return False
+        self._stills.keep(request, self._scaled(STILL), self._shown)
+        return True
 
     def _show(self, picture: Picture) -> None:
         self._shown = picture
